@@ -36,6 +36,8 @@ CONTINUOUS = 1e-9
 thousand times smaller."""
 COMPATIBLE = 1e-12
 """Part of a force by which rows of compatibility that have not been renewed may be off."""
+STILL_COMPATIBLE = 1e-13
+"""Of a row: what null vectors may leave that are not found anew, ten times what solving for them leaves."""
 RANK_TOLERANCE = 1e-9
 """Of a row: with less left of it after elimination it repeats others."""
 NOT_DEPENDENT = 1e-9
@@ -158,6 +160,8 @@ NEARLY_JAMMED = 1e-6
 """Of a contact's inverse effective mass: with less left of it by friction, it jams."""
 FRICTION_ENOUGH = 1e-14
 """Of the largest force of several contacts in space: what a sweep changes when it is done."""
+FRICTION_SOLVED = 1e-15
+"""The same: where Newton's method leaves no more, its next step would be made of rounding."""
 FRICTION_NEAR = 1e-12
 """The same: what Newton's method may leave."""
 FRICTION_EXACT = 1e-10

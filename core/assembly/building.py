@@ -23,7 +23,7 @@ from ..state.workspace_records import (
     partition_at,
     structure_at,
 )
-from .compatibility import begin_sharing
+from .compatibility import begin_sharing, list_sharing
 from .entries import list_entries, size_of_entries
 from .serials import next_serial, same_numbers
 from .structure_switch import HELD, KINDS, STUCK, STUCK_TWICE, take_structure
@@ -61,25 +61,33 @@ def engage_wanted(ws: Any) -> int:
 def _build(ws: Any, b: Any, st: Any) -> int:
     n, m, scratch, needs = b.n, b.m, ivec(b.scratch, 2), ivec(b.needs, 8)
     raw, table = size_of_entries(ws, b)
-    n_implied, n_sharing = _count_sharing(ws, b)
-    shared = n_implied * n_sharing
-    raw += shared
     wide = n + 2 * m + 2
-    size = 3 * (m + 1) + n_sharing + 5 * raw + wide
+    size = 4 * (m + 1) + 5 * raw + wide
     if size > scratch[1]:
         needs[SCRATCH] = size
         return WANT_ROOM
     at = scratch[0]
     active, matrix_row = ivec(at, m + 1), ivec(at + 8 * (m + 1), m + 1)
-    matrix_col, sharing = ivec(at + 16 * (m + 1), m + 1), ivec(at + 24 * (m + 1), n_sharing)
-    at += 24 * (m + 1) + 8 * n_sharing
+    matrix_col, sharing_start = ivec(at + 16 * (m + 1), m + 1), ivec(at + 24 * (m + 1), m + 1)
+    at += 32 * (m + 1)
+    m_act, m_held, n_implied, left_out = _find_rows(ws, b, active, matrix_row, matrix_col)
+    n_sharing = list_sharing(ws, b, m_act, n_implied, active, matrix_col, sharing_start, sharing_start, False)
+    raw += n_sharing
+    size += 6 * n_sharing
+    if size > scratch[1]:
+        needs[SCRATCH] = size
+        return WANT_ROOM
+    sharing = ivec(at, n_sharing)
+    at += 8 * n_sharing
     row, col = ivec(at, raw), ivec(at + 8 * raw, raw)
     by_col, order, slot = ivec(at + 16 * raw, raw), ivec(at + 24 * raw, raw), ivec(at + 32 * raw, raw)
     count = ivec(at + 40 * raw, wide)
-    m_act, m_held, left_out = _find_rows(ws, b, active, matrix_row, matrix_col)
+    list_sharing(ws, b, m_act, n_implied, active, matrix_col, sharing_start, sharing, True)
     full = n + m_act + n_implied
     first = list_entries(ws, b, matrix_row, matrix_col, row, col)
-    _list_sharing(ws, b, n, n_implied, m_act, first, matrix_col, sharing, row, col)
+    for p in range(n_implied):
+        for e in range(sharing_start[p], sharing_start[p + 1]):
+            row[first + e], col[first + e] = n + m_act + p, n + sharing[e]
     kept = _sort(raw, full, full + m, row, col, by_col, order, count)
     # equal places share a slot
     total, nnz, n_mass, n_jacobian, last_row, last_col = 0, 0, 0, 0, -1, -1
@@ -94,12 +102,12 @@ def _build(ws: Any, b: Any, st: Any) -> int:
                 n_jacobian += 1 if last_row >= n and last_col < n else 0
         slot[e] = total - 1
     words = (
-        b.n_contacts + m_act + n_implied + n_sharing + shared + left_out
+        b.n_contacts + m_act + 3 * n_implied + 1 + 2 * n_sharing + left_out
         + 3 * nnz + b.m_ext + 2 * (total - nnz) + n_mass + m_act + 1 + 3 * n_jacobian
         + table + 2 * words_of(full, nnz)
         + m_act + 9 * n_jacobian + words_of(m_act, n_jacobian) + words_of(m_held, n_jacobian) + 8
     )  # fmt: skip
-    reals = total + 1 + shared + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
+    reals = total + 1 + 2 * n_sharing + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
     enough = _need(needs, WORDS, words, st.words_room)
     enough = _need(needs, REALS, reals, st.reals_room) and enough
     pt, kkt = partition_at(st.partition), lu_at(st.kkt)
@@ -133,10 +141,11 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         order,
         slot,
         table,
+        sharing_start,
         sharing,
         first,
     )
-    begin_sharing(st)
+    begin_sharing(ws, st)
     st.built, st.serial = 1, next_serial(b)
     return OK
 
@@ -149,51 +158,18 @@ def _need(needs: Any, k: int, size: int, room: int) -> bool:
 
 
 @internal
-def _count_sharing(ws: Any, b: Any) -> tuple[int, int]:
-    """How many rows of closed contacts are implied by others, and how many multipliers share the load with them."""
-    codes, implied, sharing = ivec(ws.wanted, b.n_contacts), 0, 0
-    for k in range(b.n_contacts):
-        kind, bits = codes[k] % KINDS, codes[k] // KINDS
-        implied += bits % 2 + bits // 2 % 2 + bits // 4
-        sharing += (kind >= HELD) + (kind >= STUCK) + (kind == STUCK_TWICE)
-    return implied, sharing if implied > 0 else 0
-
-
-@internal
-def _list_sharing(
-    ws: Any, b: Any, n: int, n_implied: int, m_act: int, first: int, matrix_col: Any, sharing: Any, row: Any, col: Any
-) -> None:
-    """Which multipliers share the load, by their places among those of the matrix, and the entries of the rows of
-    compatibility, behind the `first` entries of the elements."""
-    if n_implied == 0:
-        return
-    codes, count = ivec(ws.wanted, b.n_contacts), 0
-    rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
-    for k in range(b.n_contacts):
-        kind = codes[k] % KINDS
-        for of in range(3):
-            if kind >= HELD + of:
-                sharing[count] = matrix_col[rows[k] if of == 0 else slides[k] + of - 1] - n
-                count += 1
-    for p in range(n_implied):
-        for j in range(count):
-            at = first + p * count + j
-            row[at], col[at] = n + m_act + p, n + sharing[j]
-
-
-@internal
-def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any, matrix_col: Any) -> tuple[int, int, int]:
+def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any, matrix_col: Any) -> tuple[int, int, int, int]:
     """Active rows, those with a position form first and each part ascending, with the implied ones behind them, and the
     row of the matrix of each row of Phi: below it stand those that are only listed, -1 is none; and the column of the
-    matrix of its transpose. Returns how many are active, how many of these have a position form, and how many rows are
-    redundant."""
+    matrix of its transpose. Returns how many are active, how many of these have a position form, how many are implied,
+    and how many of these are of joints."""
     codes, out, rate = ivec(ws.wanted, b.n_contacts), ivec(b.left_out, b.m_ext), ivec(b.rate_rows, b.m_ext)
     rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
     seconds, listed = ivec(b.contact_second_rows, b.n_contacts), ivec(b.listed, b.n_contacts)
     replaced, by = ivec(b.replaced_row, b.n_replaced), ivec(b.replaced_contact, b.n_replaced)
     left_out, count, held = 0, 0, 0
     for i in range(b.m):
-        matrix_row[i] = 1 if i < b.m_joints and out[i] == 0 else 0
+        matrix_row[i] = 0 if i >= b.m_joints else (3 if out[i] != 0 else 1)
         left_out += 1 if out[i] != 0 else 0
     matrix_row[b.m] = -1
     for e in range(b.n_replaced):
@@ -230,7 +206,7 @@ def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any, matrix_col: Any) -
         matrix_col[active[place]] = b.n + place
         if place < count:
             matrix_row[active[place]] = b.n + place
-    return count, held, left_out
+    return count, held, full - count, left_out
 
 
 @internal

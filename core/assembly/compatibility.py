@@ -1,14 +1,16 @@
 """How rows that repeat each other share the load: rows of compatibility.
 
-Where closed contacts repeat each other (a block on four feet), the constraints of some of them are implied by those of
-the others. The motion is the same with any multipliers lambda' = lambda + n, Phi_q^T n = 0. Forces of rigid contacts
-are the limit of those of equally compliant ones, A + eps C with eps -> 0. Multiplied by a null vector n of Phi_q^T, of
-which A is made, the equations (A + eps C) lambda + b = 0 leave n^T C lambda = 0 for any eps: of all multipliers that
-give the motion these are the ones of least C-norm (Tikhonov 1963; for multibody systems Wojtyra and Fraczek 2013, who
-compare such choices). So in place of the equation of each implied row the matrix has such a row, and sliding friction
-follows the normal forces that it gives.
+Where closed contacts repeat each other (a block on four feet), or joints do (a door on two hinges), the constraints of
+some of them are implied by those of the others. The motion is the same with any multipliers lambda' = lambda + n,
+Phi_q^T n = 0. Forces of rigid contacts are the limit of those of equally compliant ones, A + eps C with eps -> 0.
+Multiplied by a null vector n of Phi_q^T, of which A is made, the equations (A + eps C) lambda + b = 0 leave
+n^T C lambda = 0 for any eps: of all multipliers that give the motion these are the ones of least C-norm (Tikhonov 1963;
+for multibody systems Wojtyra and Fraczek 2013, who compare such choices). So in place of the equation of each implied
+row the matrix has such a row, and sliding friction follows the normal forces that it gives.
 
-C is 1 for each normal and each tangent of a contact. Joints are rigid beside contacts: their compliance is 0.
+C is 1 for each normal and each tangent of a contact. Joints are rigid beside contacts, and share among themselves what
+contacts leave to them, with compliances of their own (`joint_compliance.py`). So the row of an implied contact has
+entries for contacts only, and that of an implied joint, whose null vector is of joints only, entries for joints.
 
 The null vector of an implied row g is (-w, 1), Phi_q^T w = g^T. It is found by one solution with the transposed matrix
 of the equations, whatever rows of compatibility this has: where G are the rows of Phi_q that are solved for, B those of
@@ -19,51 +21,111 @@ last serve to find the present ones.
 
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import compiled, internal
-from ..compiled.views import imat, ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..linalg.analyze import call_analyze
 from ..linalg.solve import solve_transposed
-from ..rounding import COMPATIBLE
-from ..state.workspace_records import structure_at
+from ..rounding import COMPATIBLE, STILL_COMPATIBLE
+from ..state.workspace_records import OK, building_at, structure_at
+from .structure_switch import HELD, KINDS
 
 
 @internal
-def begin_sharing(st: Any) -> None:
-    """Rows of compatibility of a structure that has just been built: each implied row carries nothing."""
-    rows = mat(st.compatibility, st.n_implied, st.n_sharing)
-    sharing = ivec(st.sharing, st.n_sharing)
+def list_sharing(
+    ws: Any, b: Any, m_act: int, n_implied: int, active: Any, matrix_col: Any, start: Any, sharing: Any, write: bool
+) -> int:
+    """Which multipliers share the load with each of the implied rows, by their places among those of the matrix, where
+    each row of compatibility begins, and how many numbers these rows have; `write`: to `start` and `sharing`."""
+    codes, compliance, mechanism = ivec(ws.wanted, b.n_contacts), vec(b.compliance, b.m_ext), ivec(b.mechanism, b.m_ext)
+    rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
+    count = 0
+    for p in range(n_implied):
+        own = active[m_act + p]
+        if write:
+            start[p] = count
+        for i in range(b.m_joints if own < b.m_joints else 0):
+            if matrix_col[i] >= 0 and mechanism[i] == mechanism[own] and compliance[i] > 0.0:
+                if write:
+                    sharing[count] = matrix_col[i] - b.n
+                count += 1
+        for k in range(b.n_contacts if own >= b.m_joints else 0):
+            for of in range(3):
+                if codes[k] % KINDS >= HELD + of:
+                    if write:
+                        sharing[count] = matrix_col[rows[k] if of == 0 else slides[k] + of - 1] - b.n
+                    count += 1
+    if write:
+        start[n_implied] = count
+    return count
+
+
+@internal
+def begin_sharing(ws: Any, st: Any) -> None:
+    """Rows of compatibility of a structure that has just been built: each implied row carries nothing. Null vectors of
+    different mechanisms have nothing in common, so one solution finds one of each of them."""
+    b, start, sharing = (
+        building_at(ws.building),
+        ivec(st.sharing_start, st.n_implied + 1),
+        ivec(st.sharing, st.n_sharing),
+    )
+    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    active, mechanism = ivec(st.active, st.m_act + st.n_implied), ivec(b.mechanism, b.m_ext)
+    colors = 0
     for p in range(st.n_implied):
-        for j in range(st.n_sharing):
-            rows[p, j] = 1.0 if sharing[j] == st.m_act + p else 0.0
+        for e in range(start[p], start[p + 1]):
+            rows[e] = 1.0 if sharing[e] == st.m_act + p else 0.0
+        own, color[p] = active[st.m_act + p], colors
+        if own < b.m_joints:
+            color[p] = 0
+            for other in range(p):
+                color[p] += 1 if mechanism[active[st.m_act + other]] == mechanism[own] else 0
+        colors = max(colors, color[p] + 1)
 
 
 @internal
-def write_compatibility(ws: Any) -> None:
-    """The rows of compatibility, to their slots in the matrix."""
+def _first_shared(ws: Any, joints: bool) -> int:
+    """From which of the implied rows on the load is shared: `joints`, if they are asked for, stand before contacts."""
+    first, active, b = 0, ivec(ws.active, ws.m_act + ws.n_implied), building_at(ws.building)
+    if not joints and b.loads_felt == 0:
+        while first < ws.n_implied and active[ws.m_act + first] < b.m_joints:
+            first += 1
+    return first
+
+
+@internal
+def write_compatibility(ws: Any, joints: bool) -> None:
+    """The rows of compatibility, to their slots in the matrix. Those of joints only if it is asked what these carry, or
+    forces depend on it; else the implied ones carry nothing."""
     if ws.n_implied == 0:
         return
-    st = structure_at(ws.structure)
-    rows, slots = mat(st.compatibility, st.n_implied, st.n_sharing), imat(st.sharing_slot, st.n_implied, st.n_sharing)
+    st, first = structure_at(ws.structure), _first_shared(ws, joints)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows, slots = vec(st.compatibility, st.n_sharing), ivec(st.sharing_slot, st.n_sharing)
     values = vec(ws.values, ws.n_values)
     for p in range(st.n_implied):
-        for j in range(st.n_sharing):
-            values[slots[p, j]] = rows[p, j]
+        for e in range(start[p], start[p + 1]):
+            alone = 1.0 if sharing[e] == st.m_act + p else 0.0
+            values[slots[e]] = rows[e] if p >= first else alone
 
 
 @internal
-def left_of_sharing(ws: Any) -> None:
-    """What the multipliers leave of the rows of compatibility, its negative, to their places in `rhs`."""
+def left_of_sharing(ws: Any, joints: bool) -> None:
+    """What the multipliers leave of the rows of compatibility as `write_compatibility` has written them, its negative,
+    to their places in `rhs`."""
     if ws.n_implied == 0:
         return
-    st, lam = structure_at(ws.structure), vec(ws.lam, ws.m_ext)
-    rows, sharing = mat(st.compatibility, st.n_implied, st.n_sharing), ivec(st.sharing, st.n_sharing)
+    st, lam, first = structure_at(ws.structure), vec(ws.lam, ws.m_ext), _first_shared(ws, joints)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows = vec(st.compatibility, st.n_sharing)
     rhs, active = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ivec(ws.active, ws.m_act + ws.n_implied)
-    for p in range(st.n_implied):
+    for p in range(ws.n_implied):
         total = 0.0
-        for j in range(st.n_sharing):
-            total += rows[p, j] * lam[active[sharing[j]]]
-        rhs[ws.n + ws.m_act + p] = -total
+        for e in range(start[p], start[p + 1]):
+            total += rows[e] * lam[active[sharing[e]]]
+        rhs[ws.n + ws.m_act + p] = -total if p >= first else -lam[active[ws.m_act + p]]
 
 
 @internal
@@ -76,29 +138,77 @@ def solve_equations(ws: Any, lu_address: int) -> None:
 
 
 @internal
-def _renewed(ws: Any, lu_address: int) -> bool:
+def _still_null(ws: Any, st: Any, p: int, total: Any) -> bool:
+    """True if row p of compatibility, of a contact, still is a null vector of the gradients evaluated last, as finely
+    as it was found. `total` (n,): room. Where joints take part in it, whose multipliers are none of its entries, it is
+    not known to be one."""
+    values, scale, n, m_act, size = vec(ws.values, ws.n_values), vec(ws.scale, ws.n), ws.n, ws.m_act, 0.0
+    count, starts = ws.n_values, ivec(ws.gradient_start, ws.m_ext)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows = vec(st.compatibility, st.n_sharing)
+    columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
+    own_start, own = ivec(st.jacobian_start, m_act + 1), st.n_jacobian
+    own_col, own_slot = ivec(st.jacobian_col, own), ivec(st.jacobian_slot, own)
+    row = ivec(ws.active, m_act + ws.n_implied)[m_act + p]
+    for i in range(n):
+        total[i] = 0.0
+    for e in range(starts[row], starts[row + 1]):
+        total[columns[e]] += values[slots[e]]
+        size = max(size, scale[columns[e]] * abs(values[slots[e]]))
+    for j in range(start[p], start[p + 1]):
+        if sharing[j] < m_act and rows[j] != 0.0:
+            for e in range(own_start[sharing[j]], own_start[sharing[j] + 1]):
+                total[own_col[e]] += rows[j] * values[own_slot[e]]
+    for i in range(n):
+        if scale[i] * abs(total[i]) > STILL_COMPATIBLE * size:
+            return False
+    return True
+
+
+@internal
+def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
     """Rows of compatibility for the gradients evaluated last, from the factors of the equations with those that were
     valid before; False if these are still valid."""
-    st, changed = structure_at(ws.structure), False
-    n, m_act = ws.n, ws.m_act
+    st, b = structure_at(ws.structure), building_at(ws.building)
+    n, m_act, changed = ws.n, ws.m_act, False
     size = n + m_act + ws.n_implied
-    rows, sharing = mat(st.compatibility, st.n_implied, st.n_sharing), ivec(st.sharing, st.n_sharing)
+    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
+    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    compliance, units = vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
     rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
     starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
     columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
-    for p in range(ws.n_implied):
-        row = active[m_act + p]
+    first, end, total = _first_shared(ws, joints), ws.n_implied, np.empty(n)
+    now = color[first] if first < end else 0
+    while first < end:
         for i in range(size):
             rhs[i] = 0.0
-        for e in range(starts[row], starts[row + 1]):
-            rhs[columns[e]] += values[slots[e]]
-        solve_transposed(lu_at(lu_address), ws.rhs)
-        for j in range(st.n_sharing):
-            at = sharing[j]
-            new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
-            if abs(new - rows[p, j]) > COMPATIBLE:
-                changed = True
-                rows[p, j] = new
+        left, needed = False, False
+        for p in range(first, end):
+            left = left or color[p] > now
+            if color[p] == now:
+                row = active[m_act + p]
+                # (most of a structure's rows are of bodies that do not move against each other)
+                needed = needed or row < b.m_joints or not _still_null(ws, st, p, total)
+                for e in range(starts[row], starts[row + 1]):
+                    rhs[columns[e]] += values[slots[e]]
+        if needed:
+            solve_transposed(lu_at(lu_address), ws.rhs)
+        for p in range(first, end):
+            if not needed or color[p] != now:
+                continue
+            row = active[m_act + p]
+            own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
+            for e in range(start[p], start[p + 1]):
+                at = sharing[e]
+                new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
+                new *= compliance[active[at]] / own
+                if abs(new - rows[e]) * units[n + active[at]] > COMPATIBLE * unit:
+                    changed = True
+                    rows[e] = new
+        if not left:
+            break
+        now += 1
     return changed
 
 
@@ -106,9 +216,9 @@ def _renewed(ws: Any, lu_address: int) -> bool:
 def factor_equations(ws: Any, lu_address: int) -> int:
     """Factor the matrix of the equations evaluated last, with rows of compatibility of its gradients: as `factor`."""
     status = factor(lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or not _renewed(ws, lu_address):
+    if status != 0 or ws.n_implied == 0 or not _renewed(ws, lu_address, False):
         return int(status)
-    write_compatibility(ws)
+    write_compatibility(ws, False)
     return int(factor(lu_at(lu_address), ws.values))
 
 
@@ -117,10 +227,35 @@ def analyze_equations(ws: Any, lu_address: int) -> int:
     """Pivots for the matrix of the equations evaluated last, with rows of compatibility of its gradients: as
     `linalg.analyze`."""
     status = call_analyze(ws.analyze, lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or factor(lu_at(lu_address), ws.values) != 0 or not _renewed(ws, lu_address):
+    if status != 0 or ws.n_implied == 0 or factor(lu_at(lu_address), ws.values) != 0:
         return int(status)
-    write_compatibility(ws)
+    if not _renewed(ws, lu_address, False):
+        return OK
+    write_compatibility(ws, False)
     return int(call_analyze(ws.analyze, lu_at(lu_address), ws.values))
+
+
+@internal
+def factor_shared(ws: Any, lu_address: int) -> int:
+    """The same as `factor_equations` where it is asked what joints carry."""
+    status = factor(lu_at(lu_address), ws.values)
+    if status != 0:
+        return int(status)
+    _renewed(ws, lu_address, True)
+    write_compatibility(ws, True)
+    return int(factor(lu_at(lu_address), ws.values))
+
+
+@internal
+def keep_sharing(ws: Any, back: bool) -> None:
+    """Keep the rows of compatibility while a point is asked for, or put them `back`: to ask changes nothing."""
+    st = structure_at(ws.structure)
+    rows, kept = vec(st.compatibility, st.n_sharing), vec(st.sharing_kept, st.n_sharing)
+    for e in range(st.n_sharing):
+        if back:
+            rows[e] = kept[e]
+        else:
+            kept[e] = rows[e]
 
 
 @compiled

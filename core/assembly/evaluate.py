@@ -73,7 +73,7 @@ def evaluate_tangent(ws: Any, c_q: float, c_v: float) -> None:
     for i in range(ws.n_values):
         values[i] = 0.0
     call_evaluate(ws.evaluate_function, ws, TANGENT)
-    write_compatibility(ws)
+    write_compatibility(ws, False)
 
 
 @compiled

@@ -63,7 +63,7 @@ def _matrix(st: Any, k: int) -> int:
 def matrix_words(ws: Any) -> int:
     """How many words `save_matrices` writes now."""
     st = structure_at(ws.structure)
-    count = 2 + ws.n_contacts + 2 * st.m_act + st.n_implied * st.n_sharing
+    count = 2 + ws.n_contacts + 2 * st.m_act + st.n_sharing
     for k in range(4):
         lu = lu_at(_matrix(st, k))
         count += HEAD + lu.n + _numbers(lu)
@@ -87,7 +87,7 @@ def save_matrices(ws: Any, at: int) -> int:
     for i in range(m_act):
         reals[i] = probe[i]
     at += 8 * m_act
-    sharing = st.n_implied * st.n_sharing
+    sharing = st.n_sharing
     reals, rows = vec(at, sharing), vec(st.compatibility, sharing)
     for i in range(sharing):
         reals[i] = rows[i]
@@ -132,7 +132,7 @@ def restore_matrices(ws: Any, at: int, anew: int) -> int:
         if call_engage(ws.engage, ws) != OK:
             return UNFIT
         st = structure_at(ws.structure)
-    sharing = st.n_implied * st.n_sharing
+    sharing = st.n_sharing
     at, left = at + 8 * (2 + n_contacts), left - 2 * m_act - sharing
     if m_act != st.m_act or left < 0:
         return UNFIT

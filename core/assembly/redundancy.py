@@ -4,8 +4,9 @@ They are left out of the equations that are solved and checked all the same. At 
 another too, but only there: a small finite motion along the other constraints tells the two apart, since it violates
 such a row at second order and leaves a redundant one at zero.
 
-The multipliers of redundant constraints are not unique (Garcia de Jalon and Bayo 1994, Kinematic and Dynamic Simulation
-of Multibody Systems, 3.4, leave rows out by pivoting as well); those of rows left out are zero.
+The motion does not tell the multipliers of redundant constraints (Garcia de Jalon and Bayo 1994, Kinematic and Dynamic
+Simulation of Multibody Systems, 3.4, leave rows out by pivoting as well). They are those of equally compliant joints
+(`compatibility.py`).
 """
 
 import logging
@@ -108,8 +109,8 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
         arrays["q"][:n] = start
         evaluate_residuals(workspace.record)
     logger.warning(
-        "%s; these rows are left out of the equations but checked. The multipliers of these joints and of those that "
-        "they repeat are not unique: those of the rows left out are reported as 0",
+        "%s; these rows are left out of the equations but checked. The motion does not tell how these joints share "
+        "their loads: they do as if all were equally compliant",
         "; ".join(f"{r.equation} repeats what {', '.join(r.repeats)} say" for r in found),
     )
     return found
@@ -133,45 +134,57 @@ def describe(workspace: Workspace) -> tuple[RedundantRow, ...]:
     names = workspace.assembly.row_names
     with AllRows(workspace) as scaled:
         rows = workspace.structure.active
-        kept = np.flatnonzero(~np.isin(rows, dropped))
-        factors, *_ = np.linalg.lstsq(scaled.matrix[kept].T, scaled.matrix[np.isin(rows, dropped)].T, rcond=None)
-        found = []
-        for j, row in enumerate(dropped):
-            repeated = {names[rows[k]] for k in kept[np.abs(factors[:, j]) > 1e-7]}
-            # its other rows may take part, but what matters are the other joints
-            repeated = (repeated - {names[row]}) or repeated
-            name, number = names[row], int(row - names.index(names[row]))
-            of_body = f"{name}.e0" in workspace.assembly.coordinate_names
-            found.append(RedundantRow(name, number, tuple(sorted(repeated)), of_body))
-        return tuple(found)
+        repeats: dict[int, set[str]] = {}
+        for block in scaled.blocks:
+            out = np.isin(rows[block.rows], dropped)
+            if not np.any(out):
+                continue
+            factors, *_ = np.linalg.lstsq(block.matrix[~out].T, block.matrix[out].T, rcond=None)
+            kept = rows[block.rows[~out]]
+            for j, row in enumerate(rows[block.rows[out]]):
+                repeats[int(row)] = {names[k] for k in kept[np.abs(factors[:, j]) > 1e-7]}
+    found = []
+    for row in dropped:
+        # its other rows may take part, but what matters are the other joints
+        repeated = (repeats[int(row)] - {names[row]}) or repeats[int(row)]
+        name, number = names[row], int(row - names.index(names[row]))
+        of_body = f"{name}.e0" in workspace.assembly.coordinate_names
+        found.append(RedundantRow(name, number, tuple(sorted(repeated)), of_body))
+    return tuple(found)
 
 
 def choose_rows(workspace: Workspace) -> bool:
     """Choose anew which rows are left out if those kept are much worse conditioned at the current point than others of
     the same number would be; True if that has changed."""
     dropped = workspace.dropped
-    if not dropped or workspace.assembly.m_joints * workspace.assembly.n > LARGEST_CHOICE:
+    if not dropped:
         return False
     if workspace.assembly.rate_rows:
         return False  # a velocity-level row does not say what one with a position form says
     # importing scipy costs more than most runs: only who needs it pays
     from scipy.linalg import qr
 
+    better: set[int] = set()
     with AllRows(workspace) as scaled:
-        joints = np.flatnonzero(workspace.structure.active < workspace.assembly.m_joints)
-        rows, matrix = workspace.structure.active[joints], scaled.matrix[joints]
-        rank = len(rows) - len(dropped)
-        order = qr(matrix.T, mode="r", pivoting=True)[1][:rank]
-        kept = np.flatnonzero(~np.isin(rows, sorted(dropped)))
-        worse = _least_singular_value(matrix[kept]) < WORSE * _least_singular_value(matrix[order])
-    if worse:
+        active = workspace.structure.active
+        for block in scaled.blocks:
+            joints = active[block.rows] < workspace.assembly.m_joints
+            rows, matrix = active[block.rows][joints], block.matrix[joints]
+            out = np.isin(rows, sorted(dropped))
+            if matrix.size > LARGEST_CHOICE or not np.any(out):
+                better |= set(rows[out].tolist())
+                continue
+            order = qr(matrix.T, mode="r", pivoting=True)[1][: np.sum(~out)]
+            worse = _least_singular_value(matrix[~out]) < WORSE * _least_singular_value(matrix[order])
+            better |= set((np.delete(rows, order) if worse else rows[out]).tolist())
+    if better != dropped:
         least = float(workspace.arrays["rate"][LEAST_CONDITION])
-        workspace.drop(frozenset(int(row) for row in np.delete(rows, order)))
+        workspace.drop(frozenset(better))
         # the same constraints, said by other rows: how far they are from a singular position is judged as before
         workspace.arrays["rate"][LEAST_CONDITION] = least
         evaluate_residuals(workspace.record)
         evaluate_tangent(workspace.record, 0.0, 0.0)
-    return worse
+    return better != dropped
 
 
 def _least_singular_value(matrix: NDArray[np.float64]) -> float:
@@ -184,9 +197,15 @@ def _only_here(workspace: Workspace, redundant: NDArray[np.int64]) -> list[int]:
     scaled = ScaledJacobian(workspace)
     active = workspace.structure.active
     size = scaled.row_size[redundant]
-    kept = np.delete(scaled.matrix, redundant, axis=0)
-    _, values, directions = np.linalg.svd(kept, full_matrices=True)
-    free = directions[int(np.sum(values > START_RANK)) :]
+    parts = [np.zeros((0, n))]
+    for block in scaled.blocks:
+        out = np.isin(block.rows, redundant)
+        if np.any(out):
+            _, values, directions = np.linalg.svd(block.matrix[~out], full_matrices=True)
+            local = directions[int(np.sum(values > START_RANK)) :]
+            parts.append(np.zeros((len(local), n)))
+            parts[-1][:, block.cols] = local
+    free = np.concatenate(parts)
     if len(free) == 0:
         return []
     here = arrays["q"][:n].copy()

@@ -4,7 +4,7 @@ Few of them are asked for, the smallest ones, at many points in a row. Small mec
 matrix, larger ones those few from sparse factors.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..linalg.smallest_singular import smallest_singular
 from ..state.workspace_records import FACTOR_AGE
 from .evaluate import evaluate_residuals, evaluate_tangent
+from .mechanisms import mechanisms
 from .workspace import Workspace
 
 if TYPE_CHECKING:
@@ -25,6 +26,21 @@ FEW = 0.25
 """Part of all singular values beyond which the dense matrix costs less, too."""
 DIRECTIONS = 32
 """So many are looked for in the sparse matrix; where more matter, as in a row of loops that turn alike, all are."""
+
+
+class Block(NamedTuple):
+    """Part of a Jacobian that shares no coordinate with the rest.
+
+    Attributes
+    ----------
+    rows : (r,), ascending.
+    cols : coordinates that they depend on, (c,), ascending.
+    matrix : (r, c).
+    """
+
+    rows: NDArray[np.int64]
+    cols: NDArray[np.int64]
+    matrix: Floats
 
 
 class ScaledJacobian:
@@ -52,6 +68,21 @@ class ScaledJacobian:
         matrix = np.zeros(self.shape)
         matrix[self.rows, self.cols] = self.values
         return matrix
+
+    @property
+    def blocks(self) -> list[Block]:
+        """The matrix by mechanisms."""
+        number = mechanisms(*self.shape, self.rows, self.cols)
+        order, by_row = np.argsort(number[self.rows], kind="stable"), np.argsort(number, kind="stable")
+        found = []
+        for rows in np.split(by_row, np.flatnonzero(np.diff(number[by_row])) + 1):
+            ends = np.searchsorted(number[self.rows][order], [number[rows[0]], number[rows[0]] + 1])
+            entries = order[ends[0] : ends[1]]
+            cols, local = np.unique(self.cols[entries], return_inverse=True)
+            matrix = np.zeros((len(rows), len(cols)))
+            matrix[np.searchsorted(rows, self.rows[entries]), local] = self.values[entries]
+            found.append(Block(rows, cols, matrix))
+        return found
 
     @property
     def sparse(self) -> "csr_array":
@@ -99,7 +130,8 @@ def least_of(jacobian: ScaledJacobian, rank: int) -> float:
     """The `rank`-th of its singular values in descending order."""
     found = _smallest(jacobian, jacobian.shape[0] - rank + 1)
     if found is None:
-        return float(np.linalg.svd(jacobian.matrix, compute_uv=False)[rank - 1])
+        values = [np.linalg.svd(block.matrix, compute_uv=False) for block in jacobian.blocks]
+        return float(np.sort(np.concatenate(values))[::-1][rank - 1])
     return float(found[0][0])
 
 
@@ -111,8 +143,16 @@ def singular_directions(workspace: Workspace, matter: float = np.inf) -> tuple[F
     found = _smallest(jacobian, jacobian.shape[0] - rank + DIRECTIONS) if matter < np.inf else None
     if found is not None and found[0][0] >= matter:
         return found[0][:DIRECTIONS], found[1][:DIRECTIONS]
-    _, values, directions = np.linalg.svd(jacobian.matrix, full_matrices=False)
-    return values[:rank], directions[:rank]
+    parts, directions = [], []
+    for block in jacobian.blocks:
+        _, values, local = np.linalg.svd(block.matrix, full_matrices=False)
+        whole = np.zeros((len(values), jacobian.shape[1]))
+        whole[:, block.cols] = local
+        parts.append(values)
+        directions.append(whole)
+    values = np.concatenate(parts)
+    order = np.argsort(-values, kind="stable")[:rank]
+    return values[order], np.concatenate(directions)[order]
 
 
 def _smallest(jacobian: ScaledJacobian, count: int) -> tuple[Floats, Floats] | None:

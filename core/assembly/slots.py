@@ -186,15 +186,19 @@ class Slots:
         starts, new_starts = np.cumsum(sizes) - sizes, np.cumsum(new_sizes) - new_sizes
         self._use(np.zeros(count * new_stride // 4, dtype=np.uint32))
         if len(old):
+            # memory that is not touched costs nothing: there is something in the places of structures only
+            built = np.flatnonzero(self.structures["built"])
             rows, new_rows = old.reshape(count, -1), self.pool.reshape(count, -1)
             for start, new_start, size in zip(starts // 4, new_starts // 4, sizes // 4, strict=True):
-                new_rows[:, new_start : new_start + size] = rows[:, start : start + size]
-            words = [x for k in range(count) for x in self._words(k)]
-            for x in (*words, *others):
-                inside = np.flatnonzero((x >= begin_of(old)) & (x < begin_of(old) + old.nbytes))
-                place, within = np.divmod(x[inside] - begin_of(old), stride)
-                part = np.searchsorted(starts, within, side="right") - 1
-                x[inside] = begin_of(self.pool) + place * new_stride + new_starts[part] + within - starts[part]
+                for number in built.tolist():
+                    new_rows[number, new_start : new_start + size] = rows[number, start : start + size]
+            begin, new_begin = begin_of(old), begin_of(self.pool)
+            for x in (*(x for k in range(count) for x in self._words(k)), *others):
+                inside = np.flatnonzero((x >= begin) & (x < begin + old.nbytes))
+                if len(inside):
+                    place, within = np.divmod(x[inside] - begin, stride)
+                    part = np.searchsorted(starts, within, side="right") - 1
+                    x[inside] = new_begin + place * new_stride + new_starts[part] + within - starts[part]
         self._place()
         return True
 

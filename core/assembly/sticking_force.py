@@ -30,7 +30,8 @@ def implied_margin(ws: Any, k: int, before: float) -> float:
     """How far closed contact k is from what says that others do not imply its constraints: 1 where they do, 0 where its
     gap has moved by IMPLIED_MOVES, one that sticks slides by IMPLIED_SLIDES, or the gap's acceleration, which was
     `before` at the newest row, has jumped by IMPLIED_TURNS: a corner has come to the end of a face, and the rows that
-    are solved for follow its round edge. 1 for a contact that is solved for."""
+    are solved for follow its round edge. 1 for a contact that is solved for; -1 at least, since an edge much rounder
+    than what turns would make all other margins small beside it."""
     memory, row = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], ivec(ws.contact_rows, ws.n_contacts)[k]
     bits, moved = np.int64(memory[IMPLIED]), 0.0
     if memory[MODE] != CLOSED or bits == 0:
@@ -46,7 +47,7 @@ def implied_margin(ws: Any, k: int, before: float) -> float:
         phid, slide = vec(ws.phid, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
         speed = math.hypot(phid[slide], phid[slide + 1] if in_space(ws, k) else 0.0)
         moved = max(moved, speed / (IMPLIED_SLIDES * rate_size(ws, k)))
-    return float(1.0 - moved)
+    return float(max(1.0 - moved, -1.0))
 
 
 @internal

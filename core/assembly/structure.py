@@ -81,7 +81,7 @@ class Structure:
     multiplier_rows : rows of Phi that have multipliers: the active ones, and the implied ones behind them.
     two_partitions : whether dependent positions may be others than dependent velocities.
     redundant : rows of joints that repeat active ones: not solved for, but checked.
-    n_implied : rows of closed contacts that others imply: not solved for, but with multipliers.
+    n_implied : rows of joints and of closed contacts that others imply: not solved for, but with multipliers.
 
     Parameters
     ----------
@@ -191,13 +191,18 @@ class Structure:
 
     @property
     def compatibility(self) -> NDArray[np.float64]:
-        """Rows of compatibility, (n_implied * n_sharing,) (`compatibility.py`)."""
-        return self.view(self._word("compatibility"), self.n_implied * self._word("n_sharing"), np.float64)
+        """Numbers of the rows of compatibility, one row after another, (n_sharing,) (`compatibility.py`)."""
+        return self.view(self._word("compatibility"), self._word("n_sharing"), np.float64)
 
     @property
     def sharing(self) -> NDArray[np.int64]:
-        """Places of the multipliers that rows of compatibility are of, (n_sharing,)."""
+        """Places of the multipliers that these numbers are of, (n_sharing,)."""
         return self._whole("sharing", self._word("n_sharing"))
+
+    @property
+    def sharing_row(self) -> NDArray[np.int64]:
+        """Row of compatibility that each of these numbers is in, (n_sharing,)."""
+        return np.repeat(np.arange(self.n_implied), np.diff(self._whole("sharing_start", self.n_implied + 1)))
 
     def matrix(self, name: str, like: Matrix | None = None) -> Matrix:
         """One of the factorisations."""

@@ -13,20 +13,22 @@ from .entries import write_tables
 def write_structure(
     ws: Any, b: Any, st: Any, pt: Any, m_act: int, m_held: int, n_implied: int, n_sharing: int, left_out: int, nnz: int,
     total: int, n_mass: int, n_jacobian: int, kept: int, active: Any, row: Any, col: Any, order: Any, slot: Any,
-    table: int, sharing: Any, first: int,
+    table: int, sharing_start: Any, sharing: Any, first: int,
 ) -> None:  # fmt: skip
     """Write the structure of the codes that are wanted: `active` are its rows, of the `kept` entries (`row`, `col`)
     each has a number in `order`, ascending, and a `slot`; its slot
-    tables have `table` numbers. The multipliers `sharing` have rows of compatibility, whose entries are listed from
-    `first` on."""
+    tables have `table` numbers. Row p of compatibility is of the multipliers `sharing`, from `sharing_start[p]` on;
+    the entries of all are listed from `first` on."""
     full, at = b.n + m_act + n_implied, st.words
     st.n_values, st.m_act, st.n_redundant, st.nnz = total + 1, m_act, left_out, nnz
     st.m_held, st.n_mass, st.n_jacobian, st.dropped = m_held, n_mass, n_jacobian, b.dropped
     st.n_implied, st.n_sharing = n_implied, n_sharing
     st.codes, st.active, st.redundant = at, at + 8 * b.n_contacts, at + 8 * (b.n_contacts + m_act + n_implied)
     at += 8 * (b.n_contacts + m_act + n_implied + left_out)
-    st.sharing, st.sharing_slot = at, at + 8 * n_sharing
-    at += 8 * (n_sharing + n_implied * n_sharing)
+    st.sharing_start, st.sharing_color = at, at + 8 * (n_implied + 1)
+    st.sharing = st.sharing_color + 8 * n_implied
+    st.sharing_slot = st.sharing + 8 * n_sharing
+    at = st.sharing_slot + 8 * n_sharing
     st.entry_row, st.entry_col, everything = at, at + 8 * nnz, at + 16 * nnz
     at += 24 * nnz
     st.gradient_start, st.gradient_col = at, at + 8 * b.m_ext
@@ -44,11 +46,15 @@ def write_structure(
     out, count = ivec(b.left_out, b.m_ext), 0
     for i in range(m_act + n_implied):
         own[i] = active[i]
-    places, slots = ivec(st.sharing, n_sharing), ivec(st.sharing_slot, n_implied * n_sharing)
-    for j in range(n_sharing):
-        places[j] = sharing[j]
-    for e in range(n_implied * n_sharing):
-        slots[e] = slot[first + e]
+    starts, places, slots = (
+        ivec(st.sharing_start, n_implied + 1),
+        ivec(st.sharing, n_sharing),
+        ivec(st.sharing_slot, n_sharing),
+    )
+    for p in range(n_implied + 1):
+        starts[p] = sharing_start[p]
+    for e in range(n_sharing):
+        places[e], slots[e] = sharing[e], slot[first + e]
     for i in range(b.m):
         if out[i] != 0:
             redundant[count] = i
@@ -61,7 +67,8 @@ def write_structure(
     reals, many = st.reals, words_of(full, nnz)
     st.values, st.probe = reals, reals + 8 * (total + 1)
     st.compatibility = reals + 8 * (total + 1 + m_act)
-    reals += 8 * (total + 1 + m_act + n_implied * n_sharing)
+    st.sharing_kept = st.compatibility + 8 * n_sharing
+    reals += 8 * (total + 1 + m_act + 2 * n_sharing)
     probe = vec(st.probe, m_act)
     for i in range(m_act):
         probe[i] = 0.0

@@ -11,6 +11,7 @@ from ..compiled.jit import address_of
 from ..compiled.kernels import BATCH
 from ..compiled.records import ArrayRecord, Record, words_of
 from ..compiled.weakly import Weakly
+from ..contacts.geometry_kinds import JOINT
 from ..linalg import DENSE_LIMIT
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze
 from ..linalg.memory import addresses
@@ -32,6 +33,7 @@ from ..state.workspace_records import (
 from .assembly import Assembly
 from .building import engage_wanted
 from .evaluate import all_kernels
+from .joint_compliance import joint_compliance
 from .numbers import constraints_are_cheap, level_scale, release, sticking
 from .partition_building import partition_wanted
 from .patterns import FEW, entries_of_few, patterns, shows
@@ -50,6 +52,8 @@ _OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
 _NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
+_OF_BUILDING = ("left_out", "units", "compliance", "mechanism")
+"""Arrays of the record of the building of structures."""
 _STRUCTURE, _SERIAL = words_of(WORKSPACE)["structure"], words_of(STRUCTURE)["serial"]
 FEW_CONTACTS = FEW
 """Contacts up to which there is room from the start for the structure of all of them."""
@@ -152,6 +156,8 @@ class Workspace:
         self.slots = Slots(most_places(a), sparse, PROGRAM_LIMIT, len(self._shapes))
         arrays["units"] = np.ones(a.n + m_ext)  # of coordinates (with forces) and rows of Phi (with multipliers)
         arrays["left_out"] = np.zeros(m_ext, dtype=np.int64)
+        arrays["compliance"] = np.ones(m_ext)
+        arrays["mechanism"] = np.zeros(m_ext, dtype=np.int64)
         self._building = self._make_building(arrays)
         self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
         self._views: dict[int, Structure] = {}
@@ -160,7 +166,7 @@ class Workspace:
         self._make_batches: Callable[[], list[ArrayRecord]] = list
         self._made_batches: list[ArrayRecord] | None = [self._batch(k) for k in range(len(a.batches))]
         arrays["batches"][:] = [batch.address for batch in self._batches]
-        record_arrays = {k: v for k, v in arrays.items() if k not in ("signals", "units", "left_out")}
+        record_arrays = {k: v for k, v in arrays.items() if k not in ("signals", *_OF_BUILDING)}
         self._record = ArrayRecord(
             WORKSPACE,
             record_arrays,
@@ -242,6 +248,8 @@ class Workspace:
         arrays["scale"][:] = assembly.coordinate_scale
         arrays["level_scale"][:] = level_scale(assembly)
         arrays["inputs"][: len(assembly.input_start), 0] = assembly.input_start
+        if self.dropped:
+            self._take_compliance()
 
     @property
     def record(self) -> Record:
@@ -274,7 +282,7 @@ class Workspace:
             {
                 **patterns(a), "replaced_row": rows, "replaced_contact": contacts,
                 **{name: arrays[name] for name in (
-                    "left_out", "units", "contact_rows", "contact_slide_rows", "contact_second_rows",
+                    *_OF_BUILDING, "contact_rows", "contact_slide_rows", "contact_second_rows",
                 )},
                 "rate_rows": np.array([int(row in a.rate_rows) for row in range(a.m + 1)], dtype=np.int64),
                 "needs": slots.needs, "structures": slots.addresses,
@@ -282,7 +290,7 @@ class Workspace:
             {
                 "n": a.n, "m": a.m, "m_joints": a.m_joints, "m_ext": a.m + 1, "n_contacts": len(a.contacts),
                 "n_kernels": len(a.batches), "n_replaced": len(rows),
-                "two_partitions": int(bool(a.rate_rows)),
+                "two_partitions": int(bool(a.rate_rows)), "loads_felt": int(any(c.kind == JOINT for c in a.contacts)),
                 "dropped": 0, "dense_limit": DENSE_LIMIT, "scratch": slots.scratch.cell.ctypes.data,
                 "n_slots": len(slots.structures), "serial": 0,
             },
@@ -389,10 +397,23 @@ class Workspace:
             self._partition = present
             self._forget_arrays(OF_PARTITION)
 
+    def _take_compliance(self) -> None:
+        self.arrays["compliance"][:], self.arrays["mechanism"][:] = joint_compliance(self.assembly)
+
+    def joints_sharing(self, dropped: frozenset[int], closed: frozenset[int]) -> int:
+        """How many numbers the rows of compatibility of joints have if these rows are left out and contacts closed."""
+        replaced = {row for row, contacts in self.assembly.replaced_rows.items() if contacts & closed}
+        compliance, mechanism = joint_compliance(self.assembly)
+        of_joints = np.arange(self.assembly.m_joints)
+        shares = (compliance[of_joints] > 0.0) & ~np.isin(of_joints, sorted(replaced))
+        return sum(int(np.sum(shares & (mechanism[of_joints] == mechanism[row]))) for row in dropped - replaced)
+
     def drop(self, rows: frozenset[int]) -> None:
-        """Leave the redundant `rows` of joints out of the equations; their multipliers are zero."""
+        """Leave the redundant `rows` of joints out of the equations; they share the load with those that imply them."""
         if rows == self.dropped:
             return
+        if not self.dropped:
+            self._take_compliance()
         self.dropped = rows
         flags = self.arrays["left_out"]
         flags[:] = 0

@@ -27,6 +27,7 @@ from ..rounding import (
     FRICTION_NEAR,
     FRICTION_RANK,
     FRICTION_ROUGH,
+    FRICTION_SOLVED,
 )
 from .continuation import EARLIER, FINER, FIRST, MOST_LENGTH, TIMES, follow_cones, giving_way_size
 from .projections import motion_left, motion_of, residual_of_cones
@@ -93,10 +94,10 @@ def newton_on_cones(
     for _ in range(NEWTON):
         worst = residual_of_cones(n, a, b, mu, base, known, way, p, left, jac)
         if worst < least:
-            least, tried = worst, 0
+            least, tried, size = worst, 0, 0.0
             for i in range(m):
-                best[i], step[i] = p[i], -left[i]
-            if worst == 0.0:
+                best[i], step[i], size = p[i], -left[i], max(size, abs(p[i]))
+            if worst <= FRICTION_SOLVED * size:
                 break
             rest = take_single_rows(work, m, step, vec(right_at, m), kept)
             if rest > 0:

@@ -15,18 +15,19 @@ from ..compiled.views import mat, vec
 from ..linalg.single_rows import take_single_rows
 from ..linalg.small import solve_square
 from ..rounding import FRICTION_EXACT, FRICTION_GOOD, FRICTION_NEAR
-from .friction_cones import newton_on_cones, sweep_over_cones
+from .friction_cones import newton_on_cones
 from .projections import motion_left, residual_of_cones
 
-FIRST, LOWER, LAST = 0.1, 0.01, 1e-5
-"""Compliance in parts of the largest inverse mass: at first, factor from one to the next, and at last."""
+FIRST, LOWER, LAST = 10.0, 0.01, 1e-5
+"""Compliance in parts of the largest inverse mass: at first, where contacts hardly feel each other and Newton's method
+finds the forces from none at all, in whatever order they are listed; factor from one to the next; and at last."""
 LARGEST_STEPS = 0.9
 """Of that factor, whose root is taken where Newton's method does not follow: beyond, there is no way."""
 NEARER, NEAREST = 0.1, 1e-10
 """Factor from the last one to the next where what a contact does changes on the way, and the least of all."""
 SETTLED = 1e-9
 """Of the largest force: forces of two compliances that differ by less are those of the limit, and less is no force."""
-SWEEPS, ITERATIONS = 100, 40
+ITERATIONS = 40
 
 
 def least_forces_size(n: int) -> int:
@@ -148,18 +149,12 @@ def take_least_forces(
     left, best, own = vec(at, m), vec(at + 8 * m, m), vec(at + 16 * m, m)
     once, twice, last = vec(at + 24 * m, m), vec(at + 32 * m, m), vec(at + 40 * m, m)
     for i in range(m):
-        largest, own[i] = max(largest, a[i, i]), p[i]
+        largest, own[i] = max(largest, a[i, i]), base[i] if i < n else 0.0
     part, good, lower = FIRST, FIRST, LOWER
     while True:
         for i in range(m):
             twice[i], once[i] = once[i], own[i]
         _soften(m, a, part, largest, soft)
-        for _ in range(SWEEPS if part == FIRST else 0):
-            found, change, size = sweep_over_cones(n, soft, b, mu, base, known, way, own, 1.0)
-            if not found:
-                return False
-            if change <= part * size:
-                break
         if not _follow(n, soft, b, mu, base, known, way, own, jac_at, left, best):
             # from the one before in a smaller step
             for i in range(m):

@@ -88,6 +88,7 @@ class DiskOnBox2D(DiskContact2D):
     """
 
     type: Literal["DiskOnBox2D"] = "DiskOnBox2D"
+    surface_sign: ClassVar[float] = -1.0
     formula: ClassVar[ScalarContact] = scalar_contact(box_gap, box_slide)
 
     shape: Box2D

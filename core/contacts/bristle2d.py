@@ -15,12 +15,15 @@ from ..elements.geometry2d import add_product, along, bend_of, levels
 from ..laws.friction.lugre import lugre_formula
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
 from .geometry_kinds import DISKS, PLANE, are
+from .moving_surface import put_in, surface_speed
 from .normal2d import act, evaluate_law
 from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
 
 
 @internal
-def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any) -> Any:
+def _bristles(
+    b: Any, job: int, t: float, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
+) -> Any:
     """Friction of an active contact: (F_T, dF_T/dv, dz'/dv)."""
     n, w = b.ncoord, len(gradient)
     coord = imat(b.coord, b.count, n)[e]
@@ -28,7 +31,8 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
     par = mat(b.par, b.count, b.npar)[e]
     v = vec(b.v, b.n_extended)
     normal, normal_d, normal_dd, _, _ = evaluate_law(b, e, extra[0], g, along(g_gradient, v, coord))
-    z, rate = v[coord[w]], along(gradient, v, coord)
+    speed, _ = surface_speed(b, e, t)
+    z, rate = v[coord[w]], along(gradient, v, coord) - speed
     s0, last = par[FRICTION], b.npar - 1
     if job == ENERGY:
         vec(b.energy, 3)[2] += 0.5 * s0 * z * z
@@ -49,6 +53,7 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
         zd, zd_z, zd_v, force, f_z, f_v = part * zd, part * zd_z, part * zd_v, part * force, part * f_z, part * f_v
     if job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * rate + s0 * z * zd
+        put_in(b, e, force * speed)
     elif job != ENERGY:
         add_friction(b, job, e, g_gradient, g_hessian, gradient, hessian, force, f_v, f_n, normal_d, normal_dd)
     if job == RESIDUAL:
@@ -69,7 +74,7 @@ def _bristles(b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: An
 
 @internal
 def act_bristles(
-    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
+    b: Any, job: int, t: float, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
 ) -> Any:
     """What a contact with LuGre's friction adds for `job`, given its gap and the gradient of its sliding distance.
 
@@ -79,9 +84,12 @@ def act_bristles(
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     if job == RESIDUAL:
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
-        levels(b, e, imat(b.row, b.count, 2)[e, 1], 0.0, gradient, bend_of(b, e, hessian))
+        row, (speed, faster) = imat(b.row, b.count, 2)[e, 1], surface_speed(b, e, t)
+        levels(b, e, row, 0.0, gradient, bend_of(b, e, hessian))
+        vec(b.phid, b.m_extended)[row] -= speed
+        vec(b.phidd, b.m_extended)[row] -= faster
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] == ACTIVE:
-        return _bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        return _bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
     return 0.0, 0.0, 0.0
 
 
@@ -90,7 +98,7 @@ def bristle_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
         g, g_gradient, g_hessian, _, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
-        act_bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        act_bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
 
 
 @internal
@@ -98,7 +106,7 @@ def bristle_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
     par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
     for e in range(b.count):
         g, g_gradient, g_hessian, _, gradient, hessian = slide_on_disk(q, coord[e], par[e])
-        act_bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        act_bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
 
 
 are(DISKS, bristle_disk_on_disk_kernel)

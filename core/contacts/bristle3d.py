@@ -37,6 +37,7 @@ from .normal3d import KIND, SIZE, gap_of, hold, pair_of
 from .normal_rate3d import turn_normal
 from .sliding2d import FRICTION
 from .slip3d import add_slip, slip_of_batch, speed_rate_of_batch
+from .surface3d import pass_surface_in, put_in_along
 from .tangent3d import NORMAL, ROWS, U, W, column, product_with, put
 from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
 
@@ -49,8 +50,9 @@ ZERO = (0.0, 0.0, 0.0)
 
 @internal
 def _bend(
-    kind: int, b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
-) -> None:
+    kind: int, b: Any, job: int, t: float, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any,
+    work: Any,
+) -> None:  # fmt: skip
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     width, both = work.shape[1], b.ncoord
@@ -58,13 +60,14 @@ def _bend(
     pair = pair_of(b, e)
     q, v = vec(b.q, b.n_extended), vec(b.v, b.n_extended)
     n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
+    u, more, surface = pass_surface_in(b, e, t, coord, pair, u, work)
     across = dot(n, u)
     slide = less(u, times(across, n))
     speed = math.sqrt(dot(slide, slide))
     if job == RESIDUAL:
         row = imat(b.row, b.count, 2)[e, 1]
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u)
+        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u, more)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
         return
@@ -118,6 +121,7 @@ def _bend(
     if job == POWER:
         stored = s0 * (part * dot(z, bends) - shift * dot(n, z))
         vec(b.a, b.n_extended)[extra[3]] -= dot(pull, slide) + stored - normal * power
+        put_in_along(b, e, pull, surface)
         return
     if job != TANGENT:
         return
@@ -178,7 +182,7 @@ def _bend(
 
 
 @internal
-def _act_all(job: int, b: Any, width: int, rows: int) -> None:
+def _act_all(job: int, t: float, b: Any, width: int, rows: int) -> None:
     """All elements of a batch, whose gaps depend on `width` coordinates; rows : of what says how points move. Kernels
     share it, so that there is one in machine code."""
     gradient, hessian, packed = np.empty(width), np.empty((width, width)), np.empty(width * (width + 1) // 2)
@@ -195,17 +199,17 @@ def _act_all(job: int, b: Any, width: int, rows: int) -> None:
             kind = hold_on_mesh(b, e, held, moves) if kind == ON_MESH else hold(b, e, held, moves)
             g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        _bend(kind, b, job, e, g, held, moves, gradient, hessian, work)
+        _bend(kind, b, job, t, e, g, held, moves, gradient, hessian, work)
 
 
 @internal
 def bristle_sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    _act_all(job, b, SIZE, MOVES)
+    _act_all(job, t, b, SIZE, MOVES)
 
 
 @internal
 def bristle_cable3d_kernel(job: int, t: float, b: Any) -> None:
-    _act_all(job, b, WIDTH, FOOT_ROWS)
+    _act_all(job, t, b, WIDTH, FOOT_ROWS)
 
 
 are(SPHERE, bristle_sphere3d_kernel)

@@ -56,7 +56,7 @@ def rubbing_cable3d_kernel(job: int, t: float, b: Any) -> None:
         if not is_sleeping(b, e):
             piece, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
             act(b, job, piece, g, gradient, packed)
-            regularised(int(par[e, KIND]), b, job, piece, g, held, moves, gradient, hessian, work)
+            regularised(int(par[e, KIND]), b, job, t, piece, g, held, moves, gradient, hessian, work)
         e += extra[e, PIECES]
 
 
@@ -70,7 +70,7 @@ def gripping_cable3d_kernel(job: int, t: float, b: Any) -> None:
         if not is_sleeping(b, e):
             piece, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
             act(b, job, piece, g, gradient, packed)
-            grip(int(par[e, KIND]), b, job, piece, gradient, held, moves, work)
+            grip(int(par[e, KIND]), b, job, t, piece, gradient, held, moves, work)
         e += extra[e, PIECES]
 
 

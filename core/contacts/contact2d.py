@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from ..elements.base import Form, Numbering, Row
-from ..laws.friction import LuGreFriction
+from ..laws.friction import CoulombFriction, LuGreFriction
 from ..model.base import NonNegative, Record
 from ..model.markers import Marker2D
 from ..rounding import LEAST_DEFLECTION
@@ -60,7 +60,11 @@ class Contact2D(ContactElement):
         else:
             kernel, rows, size = kind.sliding_kernel, 2, n
         full = tuple((i, j) for i in range(size) for j in range(size))
-        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)))
+        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)), self.rate_rows_of_slide())
+
+    def rate_rows_of_slide(self) -> Sequence[int]:
+        """The row of the sliding distance, if it holds at velocity level only: on a surface that moves."""
+        return (1,) if self.surface_speed is not None and isinstance(self.friction, CoulombFriction) else ()
 
     def internal_coordinates(self) -> Sequence[str]:
         return ("bristle",) if isinstance(self.friction, LuGreFriction) else ()

@@ -3,15 +3,16 @@
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, cast
 
+import numpy as np
 from pydantic import model_validator
 
 from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
 from ..elements.turning_bodies import refuse_points
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
-from ..model.base import NonNegative, Record
+from ..model.base import Name, NonNegative, Record, Vector3
 from ..model.markers import Marker3D
 from ..rounding import LEAST_DEFLECTION, STILL
 from .bristle3d import BRISTLE_INDICES, bristle_sphere3d_kernel
@@ -22,6 +23,7 @@ from .frictionless3d import sphere3d_kernel
 from .moving_point3d import HOLLOW, ON_MESH, POINT_OF_CABLE, SEGMENTS, SUPPORT
 from .normal3d import SIZE
 from .support3d import SUPPORT_NUMBERS
+from .surface3d import FIRST, SECOND
 
 _ALONG, _IN_SPACE = ("bristle_x", "bristle_y"), ("bristle_x", "bristle_y", "bristle_z")
 BRISTLES = {
@@ -73,6 +75,11 @@ class Contact3D(ContactElement):
 
     turning: TurningFriction | None = None
     """What resists rolling and spinning; left out: nothing."""
+    surface_direction: Vector3 | None = None
+    """Direction in which `surface_speed` goes, dimensionless, in the axes of the marker of the shape whose surface
+    moves; of any length but zero. Its part along the normal pulls nothing."""
+    surface_body: Name | None = None
+    """Name of the body whose surface moves, or "ground"; left out: that of the first shape."""
 
     @model_validator(mode="after")
     def _slides_with_friction(self) -> "Contact3D":
@@ -97,6 +104,31 @@ class Contact3D(ContactElement):
                 "place, or one of the other laws, such as BrownMcPhee"
             )
         return self
+
+    @model_validator(mode="after")
+    def _surface_has_direction(self) -> "Contact3D":
+        speed, direction = self.surface_speed, self.surface_direction
+        if speed is None and (direction is not None or self.surface_body is not None):
+            raise ValueError(f"contact '{self.name}' says what surface moves, but has no `surface_speed`: give it too")
+        if speed is not None and (direction is None or not math.hypot(*direction) > 0.0):
+            raise ValueError(
+                f"contact '{self.name}' has a surface_speed and the surface_direction {direction}: in space it "
+                "needs one of a length that is not zero, such as (1.0, 0.0, 0.0), in the axes of the marker"
+            )
+        if self.surface_body is not None and self.surface_body not in [m.body for m in self.markers()]:
+            raise ValueError(
+                f"contact '{self.name}' has no marker on '{self.surface_body}' whose surface could move: "
+                f"surface_body is one of {[m.body for m in self.markers()]}"
+            )
+        return self
+
+    def _surface_direction(self) -> tuple[float, int, Vector3]:
+        bodies = [marker.body for marker in self.markers()]
+        number = 0 if self.surface_body is None else bodies.index(self.surface_body)
+        given = np.array(self.surface_direction, dtype=np.float64)
+        x, y, z = cast(Marker3D, self.markers()[number]).axes() @ (given / np.linalg.norm(given))
+        # what moves on the second shape moves the other way past the first one
+        return (1.0, FIRST, (x, y, z)) if number == 0 else (-1.0, SECOND, (x, y, z))
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         super().check_in(bodies)

@@ -52,7 +52,7 @@ def sliding_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
     for e in range(b.count):
         gradient, tangent = _factors(par[e], GAP_FACTORS), _factors(par[e], SLIDE_FACTORS)
         g, s = par[e, 0] + along(gradient, q, coord[e]), along(tangent, q, coord[e])
-        act_sliding(b, job, e, g, gradient, flat, s, tangent, flat, 0.0)
+        act_sliding(b, job, t, e, g, gradient, flat, s, tangent, flat, 0.0)
 
 
 @internal
@@ -61,7 +61,7 @@ def bristle_coordinate_contact_kernel(job: int, t: float, b: Any) -> None:
     flat = vec(b.q, 0)
     for e in range(b.count):
         gradient, tangent = _factors(par[e], GAP_FACTORS), _factors(par[e], SLIDE_FACTORS)
-        act_bristles(b, job, e, par[e, 0] + along(gradient, q, coord[e]), gradient, flat, tangent, flat)
+        act_bristles(b, job, t, e, par[e, 0] + along(gradient, q, coord[e]), gradient, flat, tangent, flat)
 
 
 class CoordinateTerm(Record):

@@ -37,6 +37,7 @@ from .patch3d import STILL_SPEED, creep_size, direction, turn_of_direction
 from .sliding2d import FRICTION
 from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres, tangents_in_motion
+from .surface3d import pass_surface, pass_surface_in, put_in_along
 from .tangent3d import NORMAL, U, W, column, product_with
 from .turning3d import (
     FRICTION_RADIUS,
@@ -117,7 +118,7 @@ def _says_of_tangents(par: Any, axis: int) -> float:
 
 
 @internal
-def grip_spheres(b: Any, e: int) -> None:
+def grip_spheres(b: Any, t: float, e: int) -> None:
     """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
     par, extra, coord = (
         mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
@@ -125,7 +126,7 @@ def grip_spheres(b: Any, e: int) -> None:
     memory, row, pair = mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0]], imat(b.row, b.count, 3)[e], pair_of(b, e)
     motion, _ = press_spheres(b, e)
     slip, n, closed = slip_of_spheres(b, par, coord, pair, motion), motion[2][0], memory[MODE] == CLOSED
-    u, u_rate = slip[0], slip[1]
+    u, u_rate = pass_surface(b, e, t, coord, pair, slip[0], slip[1])
     axis, angle = int(memory[AXIS]), memory[WAY]
     if not closed or axis == 0:
         axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
@@ -151,7 +152,7 @@ def grip_spheres(b: Any, e: int) -> None:
 
 
 @internal
-def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
+def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
     closed = memory[MODE] == CLOSED
@@ -162,6 +163,7 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
     row, lam, v = imat(b.row, b.count, 3)[e], vec(b.lam, b.m_extended), vec(b.v, b.n_extended)
     pair = pair_of(b, e)  # its axes, which those that are held may not be
     n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
+    u, more, surface = pass_surface_in(b, e, t, coord, pair, u, work)
     axis, angle = int(memory[AXIS]), memory[WAY]
     if not closed or axis == 0:
         axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
@@ -181,7 +183,7 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
     whole = plus(m, times(drills * radius, n))
     if job == RESIDUAL:
         a = vec(b.a, b.n_extended)
-        u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
+        u_rate = plus(more, plus(product_with(work, W, a, coord), product_with(work, U, v, coord)))
         t1_rate, t2_rate = product_with(work, T1, v, coord), product_with(work, T2, v, coord)
         z_rate = 0.0
         if radius > 0.0:
@@ -198,6 +200,7 @@ def grip(kind: int, b: Any, job: int, e: int, gradient: Any, held: Any, moves: A
             add_torque(b, coord, held, times(lam[row[0]], whole))
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= dot(pull, u) + lam[row[0]] * (power + drills * z)
+        put_in_along(b, e, pull, surface)
     else:
         values, c_q, line = vec(b.values, b.n_values), vec(b.coef, 2)[0], line_of(b, e)
         slot = imat(b.slot_s + 8 * width * width * line, width, width)
@@ -254,12 +257,12 @@ def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         if idle(b, e, job):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
-            grip_spheres(b, e)
+            grip_spheres(b, t, e)
             continue
         kind = hold(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        grip(kind, b, job, e, gradient, held, moves, work)
+        grip(kind, b, job, t, e, gradient, held, moves, work)
 
 
 are(SPHERE, gripping_sphere3d_kernel)

@@ -28,7 +28,8 @@ from .hull_faces import faces_of
 from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3d_kernel
 from .mesh_parts import normals_of
 from .moving_point3d import ON_MESH
-from .on_mesh3d import MeshPart, Numbers
+from .moving_surface import Numbers
+from .on_mesh3d import MeshPart
 from .overlap3d import apart
 
 ROUND = 1e-3

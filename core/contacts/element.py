@@ -2,14 +2,17 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 from pydantic import model_validator
 
 from ..elements.base import BodyElement, Element, Numbering, Row
 from ..laws import ContactLaw, ForceLaw
 from ..laws.friction import CoulombFriction, Friction, LuGreFriction
+from ..model.base import Vector3
 from ..model.markers import GROUND
+from ..model.signals import Constant, Signal
+from .moving_surface import Numbers
 
 
 class ContactElement(Element):
@@ -17,11 +20,17 @@ class ContactElement(Element):
 
     has_shapes: ClassVar[bool] = True
     """False: the friction of a joint."""
+    surface_sign: ClassVar[float] = 1.0
+    """-1 where the sliding distance in the plane grows against `surface_speed`, counter-clockwise round the shape."""
 
     law: ContactLaw
     """What happens when the gap closes."""
     friction: Friction | None = None
     """What resists sliding: Coulomb's for contacts as constraints, a regularised law or LuGre's for forces."""
+    surface_speed: float | Signal | None = None
+    """Speed of a belt, m/s: at which the surface of a shape goes along past the body that carries it, a number or over
+    time. In the plane along the first shape's outward normal turned by -90 degrees: to the right on a floor, clockwise
+    round a disk or a box. Left out: the surface is fixed to its body."""
 
     @model_validator(mode="after")
     def _friction_fits(self) -> "ContactElement":
@@ -39,6 +48,38 @@ class ContactElement(Element):
                 f"a contact with {type(self.law).__name__} is a constraint: give it Coulomb friction"
             )
         return self
+
+    @model_validator(mode="after")
+    def _surface_rubs(self) -> "ContactElement":
+        if self.surface_speed is not None and self.friction is None:
+            raise ValueError(
+                f"contact '{self.name}' has a surface_speed, but without friction a surface that moves pulls nothing: "
+                "give it `friction` too, or leave the speed out"
+            )
+        return self
+
+    def signals(self) -> Sequence[Signal]:
+        speed = self._surface_signal()
+        return () if speed is None else (speed,)
+
+    def _surface_signal(self) -> Signal | None:
+        """Speed of its surface over time."""
+        speed = self.surface_speed
+        return Constant(value=speed) if isinstance(speed, float | int) else speed
+
+    def _surface_direction(self) -> tuple[float, int, Vector3]:
+        """(sign of its surface's speed in the sliding velocity, where the Euler parameters of the body that carries it
+        are among its coordinates, and its direction in the frame of that body); in the plane zeros but for the sign."""
+        return self.surface_sign, 0, (0.0, 0.0, 0.0)
+
+    def _surface(self, numbering: Numbering) -> int:
+        """Column `SURFACE` of the extra indices."""
+        speed = self._surface_signal()
+        if speed is None:
+            return 0
+        account, (sign, first, direction) = numbering.work("input"), self._surface_direction()
+        numbers = (float(numbering.signal(speed)), sign, float(account), float(first), *direction)
+        return numbering.signal(cast(Signal, Numbers(numbers))) + 1
 
     def size_in(self, length: float) -> float:
         """Sliding distance in the tables by a unit of that in `units_in`, in a model of this length, m."""
@@ -82,7 +123,7 @@ class ContactElement(Element):
                 address,
                 numbering.work(f"{self.name}.impulse"),
                 numbering.work(f"{self.name}.dissipation"),
-                0,
+                self._surface(numbering),
                 friction_address,
             ),
         )

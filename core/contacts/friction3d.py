@@ -25,6 +25,7 @@ from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
 from .sliding2d import FRICTION, FRICTION_ADDRESS
 from .slip3d import add_slip, slip_of_batch, speed_rate, speed_rate_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
+from .surface3d import pass_surface, pass_surface_in, put_in_along
 from .tangent3d import NORMAL, ROWS, U, W, column
 from .turning3d import (
     FRICTION_RADIUS,
@@ -52,7 +53,7 @@ def _law(b: Any, e: int, speed: float, normal: float) -> Any:
 
 
 @internal
-def rub_spheres(b: Any, e: int) -> None:
+def rub_spheres(b: Any, t: float, e: int) -> None:
     """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
     par, extra, coord = (
         mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
@@ -60,10 +61,11 @@ def rub_spheres(b: Any, e: int) -> None:
     motion, found = press_spheres(b, e)
     pair, n, row = pair_of(b, e), motion[2][0], imat(b.row, b.count, 2)[e, 1]
     slip = slip_of_spheres(b, par, coord, pair, motion)
-    slide = less(slip[0], times(dot(n, slip[0]), n))
+    u, u_rate = pass_surface(b, e, t, coord, pair, slip[0], slip[1])
+    slide = less(u, times(dot(n, u), n))
     speed = math.sqrt(dot(slide, slide))
     vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-    vec(b.phidd, b.m_extended)[row] = speed_rate(n, motion[2][1], slip[0], slip[1])
+    vec(b.phidd, b.m_extended)[row] = speed_rate(n, motion[2][1], u, u_rate)
     vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0], MODE] != ACTIVE:
         return
@@ -80,20 +82,22 @@ def rub_spheres(b: Any, e: int) -> None:
 
 @internal
 def regularised(
-    kind: int, b: Any, job: int, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any, work: Any
-) -> None:
+    kind: int, b: Any, job: int, t: float, e: int, g: float, held: Any, moves: Any, gradient: Any, hessian: Any,
+    work: Any,
+) -> None:  # fmt: skip
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     width, coord, k = b.ncoord, imat(b.coord, b.count, b.ncoord)[e], extra[0]
     v = vec(b.v, b.n_extended)
     n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
+    u, more, surface = pass_surface_in(b, e, t, coord, pair_of(b, e), u, work)
     across = dot(n, u)
     slide = less(u, times(across, n))
     speed = math.sqrt(dot(slide, slide))
     if job == RESIDUAL:
         row = imat(b.row, b.count, 2)[e, 1]
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
-        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u)
+        vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u, more)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
     if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
         return
@@ -120,6 +124,7 @@ def regularised(
             add_torque(b, coord, held, less(times(torque, n), times(normal, m)))
     elif job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * whole - normal * power
+        put_in_along(b, e, pull, surface)
     elif job == TANGENT:
         values, coef = vec(b.values, b.n_values), vec(b.coef, 2)
         slot = imat(b.slot_s + 8 * width * width * line_of(b, e), width, width)
@@ -165,12 +170,12 @@ def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
         if idle(b, e, job):
             continue
         if job == RESIDUAL and not moves_on(int(par[e, KIND])):
-            rub_spheres(b, e)
+            rub_spheres(b, t, e)
             continue
         kind = hold(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        regularised(kind, b, job, e, g, held, moves, gradient, hessian, work)
+        regularised(kind, b, job, t, e, g, held, moves, gradient, hessian, work)
 
 
 are(SPHERE, rubbing_sphere3d_kernel)

@@ -13,10 +13,13 @@ from typing import Literal
 from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
+from ..model.base import Name, Vector3
 from ..model.markers import GROUND
+from ..model.signals import Signal
 from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D
+from .group_surfaces import with_surface
 from .groups import ContactGroup
 from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, open_contacts
 from .polygon2d import DiskOnPolygon2D, Polygon2D
@@ -44,6 +47,9 @@ def contacts_between(
     turning: TurningFriction | None = None,
     except_bodies: Iterable[tuple[str, str]] = (),
     pass_through: Iterable[tuple[str, str]] = (),
+    surface_speed: float | Signal | None = None,
+    surface_direction: Vector3 | None = None,
+    surface_body: str | None = None,
 ) -> tuple[Contact2D | Contact3D, ...]:
     """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
 
@@ -54,6 +60,8 @@ def contacts_between(
     turning : friction against rolling and spinning, of those in space.
     except_bodies : pairs of bodies that do not touch, such as those that a joint holds together.
     pass_through : pairs of kinds of shapes that have no contact, and pass through each other: ("Box3D", "Cylinder3D").
+    surface_speed, surface_direction, surface_body : speed of the surface of one of the bodies, as that of a belt, m/s;
+        in space along a direction in the frame of that body (`group_surfaces.py`).
 
     Raises
     ------
@@ -87,7 +95,7 @@ def contacts_between(
             f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
             "half-planes, and shapes of one body never touch each other"
         )
-    return tuple(made)
+    return with_surface(name, made, surface_speed, surface_direction, surface_body)
 
 
 class ContactGroup2D(ContactGroup):
@@ -118,6 +126,11 @@ class ContactGroup2D(ContactGroup):
     """Pairs of bodies that do not touch, such as those that a joint holds together."""
     pass_through: tuple[tuple[str, str], ...] = ()
     """Pairs of kinds of shapes that pass through each other, such as "Box2D" and "Segment2D", which have no contact."""
+    surface_speed: float | Signal | None = None
+    """Speed of the surface of `surface_body`, a belt, m/s, a number or over time: along the outward normal turned by
+    -90 degrees, to the right on top of a box."""
+    surface_body: Name | None = None
+    """Name of the body whose surface moves, or "ground"; left out: none."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
@@ -126,7 +139,7 @@ class ContactGroup2D(ContactGroup):
         )  # fmt: skip
         return contacts_between(
             self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies,
-            pass_through=self.pass_through,
+            pass_through=self.pass_through, surface_speed=self.surface_speed, surface_body=self.surface_body,
         )  # fmt: skip
 
 

@@ -4,6 +4,8 @@ from typing import Literal
 
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
+from ..model.base import Name, Vector3
+from ..model.signals import Signal
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
@@ -51,6 +53,12 @@ class ContactGroup3D(ContactGroup):
     pass_through: tuple[tuple[str, str], ...] = ()
     """Pairs of kinds of shapes that pass through each other, such as "Box3D" and "Cylinder3D", which have no
     contact."""
+    surface_speed: float | Signal | None = None
+    """Speed of the surface of `surface_body`, a belt, m/s, a number or over time."""
+    surface_direction: Vector3 | None = None
+    """Direction in which it goes, dimensionless, in the frame of that body; of any length but zero."""
+    surface_body: Name | None = None
+    """Name of the body whose surface moves, or "ground"; left out: none."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
@@ -62,4 +70,5 @@ class ContactGroup3D(ContactGroup):
         return contacts_between(
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
             turning=self.turning, except_bodies=self.except_bodies, pass_through=self.pass_through,
+            surface_speed=self.surface_speed, surface_direction=self.surface_direction, surface_body=self.surface_body,
         )  # fmt: skip

@@ -42,7 +42,7 @@ PLANAR, SPATIAL = 6, 14
 
 
 @internal
-def _rub(b: Any, job: int, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
+def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
     """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
     par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
     lam, row, force = vec(b.lam, b.m_extended), imat(b.row, b.count, b.nrow)[e], 0.0
@@ -59,7 +59,7 @@ def _rub(b: Any, job: int, e: int, s: float, tangent: Any, hessian: Any, period:
             values[of_rows[b.ncoord * k]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
     gap, size = vec(b.q, b.n_extended)[w] * par[GAIN], par[SIZE]
     act_sliding(
-        b, job, e, gap, np.full(1, par[GAIN]), vec(b.q, 0), size * s, size * tangent, size * hessian, size * period
+        b, job, t, e, gap, np.full(1, par[GAIN]), vec(b.q, 0), size * s, size * tangent, size * hessian, size * period
     )
 
 
@@ -80,7 +80,7 @@ def joint_friction2d_kernel(job: int, t: float, b: Any) -> None:
                 tangent[1 + i] = gradient[i]
             for k in range(len(bent)):
                 hessian[PLANAR + 1 + k] = bent[k]
-        _rub(b, job, e, s, tangent, hessian, 0.0)
+        _rub(b, job, t, e, s, tangent, hessian, 0.0)
 
 
 @internal
@@ -98,7 +98,7 @@ def joint_friction3d_kernel(job: int, t: float, b: Any) -> None:
             for j in range(i, SPATIAL):
                 hessian[k] = square[i, j]
                 k += 1
-        _rub(b, job, e, s, tangent, hessian, WHOLE_TURN if kind == ANGLE else 0.0)
+        _rub(b, job, t, e, s, tangent, hessian, WHOLE_TURN if kind == ANGLE else 0.0)
 
 
 class JointFriction(ContactElement):

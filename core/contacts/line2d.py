@@ -269,7 +269,7 @@ def sliding_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
     while e < b.count:
         piece, moves, g, g_gradient, g_hessian, gradient, hessian, xi, by_node = _slide_on_line(b, e)
         # without a sliding distance: none could be held
-        force, by_rate = act_sliding(b, job, piece, g, g_gradient, g_hessian, 0.0, gradient, hessian, 0.0)
+        force, by_rate = act_sliding(b, job, t, piece, g, g_gradient, g_hessian, 0.0, gradient, hessian, 0.0)
         if job == TANGENT and moves:
             _add_curl(b, piece, force, by_rate, gradient, xi, by_node)
         e += imat(b.extra, b.count, b.nextra)[e, PIECES]
@@ -282,7 +282,7 @@ def bristle_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
     e = 0
     while e < b.count:
         piece, moves, g, g_gradient, g_hessian, gradient, hessian, xi, by_node = _slide_on_line(b, e)
-        force, by_rate, z_by_rate = act_bristles(b, job, piece, g, g_gradient, g_hessian, gradient, hessian)
+        force, by_rate, z_by_rate = act_bristles(b, job, t, piece, g, g_gradient, g_hessian, gradient, hessian)
         if job == TANGENT and moves:
             _add_curl(b, piece, force, by_rate, gradient, xi, by_node)
             _add_turn(b, piece, bristle, z_by_rate, xi, by_node)

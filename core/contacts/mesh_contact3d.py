@@ -42,7 +42,7 @@ def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
         kind = hold_on_mesh(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        regularised(kind, b, job, e, g, held, moves, gradient, hessian, work)
+        regularised(kind, b, job, t, e, g, held, moves, gradient, hessian, work)
 
 
 @internal
@@ -56,7 +56,7 @@ def gripping_mesh3d_kernel(job: int, t: float, b: Any) -> None:
         kind = hold_on_mesh(b, e, held, moves)
         g = gap_of(kind, b, e, held, moves, gradient, hessian, packed)
         act(b, job, e, g, gradient, packed)
-        grip(kind, b, job, e, gradient, held, moves, work)
+        grip(kind, b, job, t, e, gradient, held, moves, work)
 
 
 are(SPHERE, mesh3d_kernel, rubbing_mesh3d_kernel, gripping_mesh3d_kernel)

@@ -17,17 +17,7 @@ from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3
 from .mesh_nearest3d import STRIDE, table_of
 from .mesh_parts import Points, parts_of
 from .moving_point3d import ON_MESH
-
-
-@dataclass(frozen=True)
-class Numbers:
-    """A table of numbers, which goes where those of time functions go: `cast(Signal, ...)` gives it to a numbering."""
-
-    values: Sequence[float]
-
-    def pool(self, inputs: dict[str, int]) -> Sequence[float]:
-        """The table."""
-        return self.values
+from .moving_surface import Numbers
 
 
 @dataclass(frozen=True)

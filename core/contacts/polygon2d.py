@@ -153,6 +153,7 @@ class DiskOnPolygon2D(DiskContact2D):
     """
 
     type: Literal["DiskOnPolygon2D"] = "DiskOnPolygon2D"
+    surface_sign: ClassVar[float] = -1.0
     formula: ClassVar[ScalarContact] = scalar_contact(polygon_gap, polygon_slide)
 
     shape: Polygon2D

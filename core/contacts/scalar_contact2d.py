@@ -1,6 +1,7 @@
 """Contacts from formulas: a gap function, and a sliding distance for friction."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any, ClassVar
 
@@ -91,7 +92,7 @@ def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], argument
         for e in range(b.count):
             g, s = call(q, coord[e], par[e]), call_slide(q, coord[e], par[e])
             act_sliding(
-                b, job, e, value_of(g), gradient_of(g), hessian_of(g), value_of(s), gradient_of(s), hessian_of(s),
+                b, job, t, e, value_of(g), gradient_of(g), hessian_of(g), value_of(s), gradient_of(s), hessian_of(s),
                 _period(b, e),
             )  # fmt: skip
 
@@ -99,7 +100,7 @@ def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], argument
         par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
         for e in range(b.count):
             g, s = call(q, coord[e], par[e]), call_slide(q, coord[e], par[e])
-            act_bristles(b, job, e, value_of(g), gradient_of(g), hessian_of(g), gradient_of(s), hessian_of(s))
+            act_bristles(b, job, t, e, value_of(g), gradient_of(g), hessian_of(g), gradient_of(s), hessian_of(s))
 
     made = bristle_scalar_contact2d_kernel if bristles else sliding_scalar_contact2d_kernel
     return formula_internal(made, (gap, slide), arguments)
@@ -144,7 +145,7 @@ class ScalarContact2D(Contact2D):
         n, bristles = arguments.size, isinstance(self.friction, LuGreFriction)
         ahead = None if self.kind is None else form_ahead(self.kind, formula.formulas, arguments)
         if ahead is not None:
-            return ahead
+            return replace(ahead, rate_rows=self.rate_rows_of_slide())
         derivatives(formula.gap, arguments)
         if self.friction is None:
             kernel, rows = _kernel(formula.gap, arguments), 1
@@ -158,7 +159,7 @@ class ScalarContact2D(Contact2D):
             kernel, rows = _rubbing_kernel(formula.gap, formula.slide, arguments, bristles), 2
         size = n + bristles
         full = tuple((i, j) for i in range(size) for j in range(size))
-        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)))
+        return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)), self.rate_rows_of_slide())
 
     def row(self, numbering: Numbering) -> Row:
         arguments, law = self.arguments(), self._law_columns(numbering)

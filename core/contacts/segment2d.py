@@ -114,7 +114,7 @@ def sliding_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
         g, g_gradient, g_hessian = gap_to_segment(q, coord[e], par[e])
         s, gradient, hessian = slide_on_segment(q, coord[e], par[e])
         period = 2.0 * par[e, LENGTH] + 2.0 * np.pi * par[e, 5]
-        act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, period)
+        act_sliding(b, job, t, e, g, g_gradient, g_hessian, s, gradient, hessian, period)
 
 
 @internal
@@ -123,7 +123,7 @@ def bristle_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
     for e in range(b.count):
         g, g_gradient, g_hessian = gap_to_segment(q, coord[e], par[e])
         _, gradient, hessian = slide_on_segment(q, coord[e], par[e])
-        act_bristles(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        act_bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
 
 
 class Segment2D(Record):

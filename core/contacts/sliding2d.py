@@ -2,7 +2,8 @@
 
 A closed contact that sticks has both as constraints. One that slides has the gap only, and its multiplier acts along
 grad g - mu s grad d, with s = +-1 the direction of sliding and d the sliding distance: F_T = -mu F_N s (in general
-F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law.
+F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law. On a surface that moves
+(`moving_surface.py`) the sliding velocity is d' - f, and sticking is a constraint of velocities.
 """
 
 from typing import Any
@@ -26,6 +27,7 @@ from ..elements.geometry2d import (
 from ..laws.friction import call_friction
 from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
 from .geometry_kinds import DISKS, PLANE, are
+from .moving_surface import moves, put_in, surface_speed
 from .normal2d import LAW_ADDRESS, act, evaluate_law, idle
 
 FRICTION = 11
@@ -36,7 +38,7 @@ FRICTION_ADDRESS = 5
 
 @internal
 def _slide_row(
-    b: Any, job: int, e: int, k: int, s: float, gradient: Any, hessian: Any, period: float, sticks: bool
+    b: Any, job: int, e: int, k: int, s: float, gradient: Any, hessian: Any, period: float, sticks: bool, surface: Any
 ) -> None:
     """The sliding distance's row: its value, rate and acceleration always; a constraint while the contact sticks."""
     row = imat(b.row, b.count, b.nrow)[e, 1]
@@ -48,10 +50,14 @@ def _slide_row(
     elif job == RESIDUAL:
         # what to remember if it begins to stick here
         levels(b, e, row, s, gradient, bend_of(b, e, hessian))
+    if job == RESIDUAL and moves(b, e):
+        vec(b.phi, b.m_extended)[row] = 0.0
+        vec(b.phid, b.m_extended)[row] -= surface[0]
+        vec(b.phidd, b.m_extended)[row] -= surface[1]
 
 
 @internal
-def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -> None:
+def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any, speed: float) -> None:
     """Friction of a closed contact in proportion to its normal force: F_T = slope lam; slope = mu s where it slides."""
     coord = imat(b.coord, b.count, b.ncoord)[e]
     lam = vec(b.lam, b.m_extended)[imat(b.row, b.count, b.nrow)[e, 0]]
@@ -70,8 +76,9 @@ def _slip(b: Any, job: int, e: int, slope: float, gradient: Any, hessian: Any) -
         block = imat(b.slot_s + 8 * line * n * n, n, n)
         add_hessian(values, block, gradient, hessian, -vec(b.coef, 2)[0] * slope * lam)
     elif job == POWER:
-        rate = along(gradient, vec(b.v, b.n_extended), coord)
+        rate = along(gradient, vec(b.v, b.n_extended), coord) - speed
         vec(b.a, b.n_extended)[imat(b.extra, b.count, b.nextra)[e, 3]] -= slope * lam * rate
+        put_in(b, e, slope * lam * speed)
 
 
 @internal
@@ -102,7 +109,7 @@ def add_friction(
 
 @internal
 def _regularised(
-    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any
+    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, gradient: Any, hessian: Any, speed: float
 ) -> Any:
     """The friction of an active force contact, by its regularised law: (F_T, dF_T/dv)."""
     coord = imat(b.coord, b.count, b.ncoord)[e]
@@ -110,7 +117,7 @@ def _regularised(
     par = mat(b.par, b.count, b.npar)[e]
     v = vec(b.v, b.n_extended)
     normal, normal_d, normal_dd, _, _ = evaluate_law(b, e, extra[0], g, along(g_gradient, v, coord))
-    rate = along(gradient, v, coord)
+    rate = along(gradient, v, coord) - speed
     pushing = normal > 0.0
     force, by_rate, by_normal = call_friction(
         extra[FRICTION_ADDRESS], rate, max(normal, 0.0),
@@ -120,6 +127,7 @@ def _regularised(
         by_normal = 0.0
     if job == POWER:
         vec(b.a, b.n_extended)[extra[3]] -= force * rate
+        put_in(b, e, force * speed)
     else:
         add_friction(
             b, job, e, g_gradient, g_hessian, gradient, hessian, force, by_rate, by_normal, normal_d, normal_dd
@@ -129,8 +137,8 @@ def _regularised(
 
 @internal
 def act_sliding(
-    b: Any, job: int, e: int, g: float, g_gradient: Any, g_hessian: Any, s: float, gradient: Any, hessian: Any,
-    period: float,
+    b: Any, job: int, t: float, e: int, g: float, g_gradient: Any, g_hessian: Any, s: float, gradient: Any,
+    hessian: Any, period: float,
 ) -> Any:  # fmt: skip
     """What a contact with friction adds for `job`: gap g, sliding distance s (which may jump by `period`).
 
@@ -139,17 +147,19 @@ def act_sliding(
     act(b, job, e, g, g_gradient, g_hessian)
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[k]
-    closed = memory[MODE] == CLOSED
+    closed, surface = memory[MODE] == CLOSED, surface_speed(b, e, t)
     sticks = closed and memory[SLIDE] == STICKS
+    lam = vec(b.lam, b.m_extended)
     if job == RESIDUAL:
-        lam = vec(b.lam, b.m_extended)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, b.nrow)[e, 1]] if sticks else 0.0
     if job == RESIDUAL or job == TANGENT:
-        _slide_row(b, job, e, k, s, gradient, hessian, period, sticks)
+        _slide_row(b, job, e, k, s, gradient, hessian, period, sticks, surface)
+    elif job == POWER and sticks:
+        put_in(b, e, -lam[imat(b.row, b.count, b.nrow)[e, 1]] * surface[0])
     if closed and memory[RATIO] != 0.0:
-        _slip(b, job, e, -memory[RATIO], gradient, hessian)
+        _slip(b, job, e, -memory[RATIO], gradient, hessian, surface[0])
     elif memory[MODE] == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
-        return _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian)
+        return _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian, surface[0])
     return 0.0, 0.0
 
 
@@ -187,7 +197,7 @@ def sliding_disk_on_half_plane_kernel(job: int, t: float, b: Any) -> None:
         if idle(b, e, job):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_half_plane(q, coord[e], par[e])
-        act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 0.0)
+        act_sliding(b, job, t, e, g, g_gradient, g_hessian, s, gradient, hessian, 0.0)
 
 
 @internal
@@ -198,7 +208,7 @@ def sliding_disk_on_disk_kernel(job: int, t: float, b: Any) -> None:
         if idle(b, e, job):
             continue
         g, g_gradient, g_hessian, s, gradient, hessian = slide_on_disk(q, coord[e], par[e])
-        act_sliding(b, job, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])
+        act_sliding(b, job, t, e, g, g_gradient, g_hessian, s, gradient, hessian, 2.0 * np.pi * par[e, 5])
 
 
 are(DISKS, sliding_disk_on_disk_kernel)

@@ -48,8 +48,8 @@ def speed_rate(n: Any, n_rate: Any, u: Any, u_rate: Any) -> float:
 
 
 @internal
-def speed_rate_of_batch(b: Any, coord: Any, work: Any, n: Any, u: Any) -> float:
-    """The same of an element whose n, u and matrices `slip_of_batch` has given."""
+def speed_rate_of_batch(b: Any, coord: Any, work: Any, n: Any, u: Any, more: Any) -> float:
+    """The same of an element whose n, u and matrices `slip_of_batch` has given; more : u' less W a + U v."""
     v, a = vec(b.v, b.n_extended), vec(b.a, b.n_extended)
-    u_rate = plus(product_with(work, W, a, coord), product_with(work, U, v, coord))
+    u_rate = plus(more, plus(product_with(work, W, a, coord), product_with(work, U, v, coord)))
     return float(speed_rate(n, product_with(work, NORMAL, v, coord), u, u_rate))

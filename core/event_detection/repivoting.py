@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import analyze_equations, factor_equations
+from ..assembly.compatibility import analyze_equations, factor_equations, keep_sharing
 from ..assembly.evaluate import evaluate_power, evaluate_residuals, evaluate_tangent
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
@@ -22,7 +22,7 @@ from ..state.workspace_records import OK, REANALYZE, SINGULAR
 
 
 @internal
-def _take_own(ws: Any) -> int:
+def take_own_pivots(ws: Any) -> int:
     """Pivots for the matrix as it was last evaluated: OK, SINGULAR if there are none, REANALYZE if there is too little
     memory for them."""
     lu = lu_at(ws.kkt_query)
@@ -36,7 +36,7 @@ def _take_own(ws: Any) -> int:
 
 
 @internal
-def _put_back(ws: Any) -> None:
+def put_back_pivots(ws: Any) -> None:
     lu = lu_at(ws.kkt_query)
     kept, wanted = vec(ws.query_kept, 2 * lu.n), ivec(lu.wanted, lu.n)
     for i in range(lu.n):
@@ -60,9 +60,10 @@ def project_between(ws: Any, motion: bool) -> int:
     pivots of its own would take more memory than there is."""
     lu, own = lu_at(ws.kkt_query), False
     chosen = lu.kind != DENSE and lu.ready != 0
+    keep_sharing(ws, False)
     status = project_motion(ws)
     if status == REANALYZE and chosen:
-        status, own = _take_own(ws), True
+        status, own = take_own_pivots(ws), True
         if status == OK:
             status = _unless_unfit(project_motion(ws))
     if status == OK and not motion:
@@ -70,12 +71,13 @@ def project_between(ws: Any, motion: bool) -> int:
         if own:
             status = _unless_unfit(status)
         elif status == REANALYZE and chosen:
-            status, own = _take_own(ws), True
+            status, own = take_own_pivots(ws), True
             if status == OK:
                 status = _unless_unfit(solve_accelerations(ws))
         evaluate_power(ws)
     if own:
-        _put_back(ws)
+        put_back_pivots(ws)
+    keep_sharing(ws, True)
     return status if chosen else _unless_unfit(status)
 
 
@@ -119,9 +121,9 @@ def orientation(ws: Any) -> float:
     if status == OK or lu.kind == DENSE:
         return determinant_sign(lu) if status == OK else 0.0
     # also where a pivot is next to nothing, for they may have been chosen for other values
-    status = _take_own(ws)
+    status = take_own_pivots(ws)
     if status == OK:
         status = factor_equations(ws, ws.kkt_query)
     sign = determinant_sign(lu) if status == OK else (np.nan if status == REANALYZE else 0.0)
-    _put_back(ws)
+    put_back_pivots(ws)
     return sign

@@ -23,6 +23,8 @@ JUMP = 1e-6
 """A function that is this large, relative to its largest value, right beside its root jumps there."""
 SHORT = 1e-6
 """Of a step: the last one before a jump of a force is this long."""
+AT_BEGINNING = 1.0 / 16.0
+"""Of the bracket that begins where the step does: where its next trial ends if nothing else says where."""
 FINE = 1e-2
 """Of that length: how finely the place of the jump is known then."""
 CLEARLY = 1e4
@@ -58,11 +60,19 @@ def find_root(
     # what ends one force often ends others
     nearest = vec(dr.nearest, NEAREST)
     if low <= nearest[0] < high:
-        x_high = min(nearest[1], high)
-        status, f_high = trial_value(dr, ws, ms, lc, k, what, sign, slack, x_high, full)
-        if status != OK or f_high > 0.0:
-            return status, x_high, False
-        if nearest[0] > low:
+        x_high, status = min(nearest[1], high), OK
+        # the trial that has been made last is there for this contact too; and what is behind a jump before which the
+        # step ends need not be known: steps over jumps are made in many parts
+        first_low = nearest[0] > low and (nearest[3] == 0.0 or vec(dr.last_trial, 1)[0] == nearest[0])
+        if first_low:
+            status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
+            if status == OK and f_low > 0.0 and nearest[3] == 0.0:
+                return status, nearest[2], False
+        if not first_low or (status == OK and f_low > 0.0):
+            status, f_high = trial_value(dr, ws, ms, lc, k, what, sign, slack, x_high, full)
+            if status != OK or f_high > 0.0:
+                return status, x_high, False
+        if nearest[0] > low and not first_low:
             status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
         if status != OK or nearest[0] == low or f_low > 0.0:
             return status, nearest[2], nearest[3] != 0.0
@@ -91,19 +101,19 @@ def find_root(
         elif not np.isnan(f_low) and not np.isnan(f_high):
             proposal = x_low + width * f_low / (f_low - f_high)
         else:
-            proposal = 0.5 * (x_low + x_high)
+            proposal = x_low
         if slow or not x_low < proposal < x_high:
-            proposal = 0.5 * (x_low + x_high)
+            # what is there from the beginning on is there at once: its size has no lower bound to halve towards
+            proposal = 0.5 * (x_low + x_high) if x_low > 0.0 else AT_BEGINNING * x_high
         elif abs(proposal - x) < 0.5 * least:
             # at the root: look just beyond it, so that it is between two places (Brent 1973)
             proposal = x + (0.5 * least if f > 0.0 else -0.5 * least)
         last_x, last_f = x, f
         x = proposal
     # a gap below zero by rounding that nothing closes would pass the same limit again
-    jumps, at_row = f_low > JUMP * largest, what == FORCE and x_low == 0.0 and np.isnan(f_low)
-    if at_row:
-        # right behind the newest row, whose force is none of those that have been tried
-        jumps = f_high < -JUMP * largest
+    at_row = what == FORCE and x_low == 0.0 and np.isnan(f_low)
+    # what may jump from next to nothing (right behind the newest row, nothing else is known of it): a gap does not
+    jumps = f_low > JUMP * largest or (what != GAP and f_high < -JUMP * largest)
     if (jumps or what == OVERLAP) and not np.isnan(f_high):
         if what == FORCE and x_low > 10.0 * SHORT * full:
             # a step takes what is at its end for a part of all of it: let the one over the jump be short

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..assembly.levels import force_level
+from ..assembly.levels import force_level, rate_size
 from ..assembly.sticking_force import friction_limit, held_friction, implied_margin, is_held
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
@@ -66,11 +66,15 @@ def trial_value(
     if what == CLOSING:
         return OK, vec(ws.phidd, ws.m_ext)[row] + slack
     memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
-    force = sign * vec(ws.monitor, ws.n_contacts)[k]
+    force, strongest = sign * vec(ws.monitor, ws.n_contacts)[k], force_level(ws) / vec(ws.row_scale, ws.m_ext)[row]
     if memory[MODE] == CLOSED and vec(ws.contact_sticking, ws.n_contacts)[k] > 0.0 and memory[SLIDE] != IDLE:
-        force = min(force, friction_margin(ws, k) + _no_margin(ws, ms, lc, k))
+        left, fastest = friction_margin(ws, k) + _no_margin(ws, ms, lc, k), rate_size(ws, k)
+        if not is_held(ws, k) and fastest > 0.0:
+            # speeds beside forces, each in parts of its scale: what is small does not depend on the units
+            left *= strongest / fastest
+        force = min(force, left)
     before = mat(lc.watch, ws.n_contacts, WATCH)[k, 2]
     margin = implied_margin(ws, k, before) if ms.exact != 0 else 1.0
     if margin < 1.0:
-        force = min(force, force_level(ws) / vec(ws.row_scale, ws.m_ext)[row] * margin)
+        force = min(force, strongest * margin)
     return OK, force

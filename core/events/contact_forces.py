@@ -101,6 +101,12 @@ def _falls_back(ev: Any, ws: Any, part: Any) -> bool:
 
 
 @internal
+def _is_immovable(a: Any, count: int, i: int) -> bool:
+    """True if no force moves touching contact i along its tangents."""
+    return bool(a[count + i, count + i] == 0.0 and a[2 * count + i, 2 * count + i] == 0.0)
+
+
+@internal
 def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
     """Forces of the contacts `part`, and of others at rest that these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
@@ -112,9 +118,8 @@ def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
         b[i], b[count + i], b[2 * count + i] = col(ev, B_N)[i], col(ev, B_T)[i], col(ev, B_S)[i]
         fastest = max(fastest, abs(b[i]), abs(b[count + i]), abs(b[2 * count + i]))
         direction[i], col(ev, BASE)[i] = col(ev, KNOWN)[i], 0.0
-        immovable = a[count + i, count + i] == 0.0 and a[2 * count + i, 2 * count + i] == 0.0
         begins = math.sqrt(b[count + i] ** 2 + b[2 * count + i] ** 2)
-        if immovable and begins > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
+        if _is_immovable(a, count, i) and begins > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
             # its motion is prescribed, friction is against it
             direction[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (
                 BEGINS,
@@ -128,32 +133,38 @@ def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
         if not solve_with_loads(ev, ws, lc, a, takes, b, mu, col(ev, BASE), direction, p):
             name_jammed(ev, ws)
             return NO_FORCES
-        again = False
+        joins, again = False, False
         for i in range(count):
             col(ev, F_N)[i], col(ev, F_T)[i], col(ev, F_S)[i] = p[i], p[count + i], p[2 * count + i]
-        clear(free, count)
-        if any_slips:
-            find_sliding(ev, list_held(ev, ws, takes, REACHES_LIMIT_NOW, free), free)
-        for i in range(count):
             w_n, w_t, w_s = b[i], b[count + i], b[2 * count + i]
             for j in range(3 * count):
                 w_n += a[i, j] * p[j]
                 w_t += a[count + i, j] * p[j]
                 w_s += a[2 * count + i, j] * p[j]
             col(ev, W_N)[i], col(ev, W_T)[i], col(ev, W_S)[i] = w_n, w_t, w_s
+            if ms.exact != 0 and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
+                if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
+                    takes[i], joins = 1.0, True
+        if joins:
+            # what begins to slide follows from the forces of all that press, not of those that did before
+            for i in range(count):
+                if direction[i] == BEGINS and not _is_immovable(a, count, i):
+                    direction[i] = 0.0
+            continue
+        clear(free, count)
+        if any_slips:
+            find_sliding(ev, list_held(ev, ws, takes, REACHES_LIMIT_NOW, free), free)
+        for i in range(count):
             if direction[i] == 0.0 and mu[i] > 0.0 and p[i] > 0.0:
                 # at its limit, and it moves: it begins to slide, against its friction
                 force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
-                moves = math.sqrt(w_t * w_t + w_s * w_s) > STICKS_STILL * fastest
+                moves = math.sqrt(col(ev, W_T)[i] ** 2 + col(ev, W_S)[i] ** 2) > STICKS_STILL * fastest
                 # where a contact has its event at its limit, so have those that nothing else holds
                 least = limit * (1.0 - (REACHES_LIMIT_NOW if any_slips else REACHES_LIMIT))
                 if force >= least and (moves or free[i] != 0.0):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
                     again = again or any_slips or col(ev, KINETIC)[i] != col(ev, STATIC)[i]
-            elif ms.exact != 0 and takes[i] == 0.0 and col(ev, AT_REST)[i] != 0.0:
-                if w_n < -1e3 * real(ev)[NONE] * col(ev, SIZE)[i]:
-                    takes[i], again = 1.0, True
         if not again:
             break
     return SETTLED

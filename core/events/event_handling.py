@@ -205,12 +205,23 @@ def begin_pending_forces(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
 
 @internal
 def go_on_behind(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
-    """Go on behind the breakpoint that is due; closed contacts that do not fit the new forces are pending."""
+    """Go on behind the breakpoint that is due; closed contacts that do not fit the new forces, or surfaces that have
+    jumped in speed, are pending."""
+    _keep(ev, ws, False)
+    structure = ws.structure
+    ws.kept = structure
     status = pass_breakpoint(ev, dr, ws, ms)
+    ws.kept = 0
     if status != SETTLED:
+        _put_back(ev, ws, ms, structure)
         return status
     begin_anew(ws, ms, lc)
-    if not find_unsettled(ev, ws, ivec(dr.pending, ws.n_contacts)):
+    pending, moved = ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts)
+    unsettled = find_unsettled(ev, ws, pending)
+    for k in range(ws.n_contacts):
+        if moved[k] != 0:
+            pending[k], unsettled = 1, True
+    if not unsettled:
         _sample(dr, ws, lc)
     return SETTLED
 

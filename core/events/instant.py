@@ -97,6 +97,7 @@ class Instant:
                 "space_a": every * every, "space_b": every, "space_p": every,
                 "pressing_a": every * every, "torques": most * n,
                 "space_room": every * every + 4 * every + friction_cones_size(most) + least_forces_size(most),
+                "space_kept": every * every + 4 * every + 2,
                 "slots_work": min(n * n, n + entries_of_few(assembly, contacts)[0]),
             },
             {

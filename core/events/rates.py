@@ -149,8 +149,52 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
             for j in range(n):
                 for other in range(3):
                     own[block * n + i, other * n + j] = a[block * count + p_i, other * count + some[j]]
+    if not _recalled(ev, n) and not _solve_in_room(ev, n, some[0]):
+        return False
+    for i in range(n):
+        for block in range(3):
+            p[block * count + some[i]] = own_p[block * n + i]
+    return True
+
+
+@internal
+def _recalled(ev: Any, n: int) -> bool:
+    """True if the problem of n contacts in the room is the last one that was solved: then its forces are in the room
+    too. An instant that wants memory is decided again from its beginning."""
+    size = 9 * n * n + 11 * n
+    room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
+    first, behind = 9 * n * n + 3 * n, 9 * n * n + 6 * n
+    if kept[0] != n:
+        return False
+    for i in range(size):
+        if room[i] != kept[2 + i] and not first <= i < behind:
+            return False
+    for i in range(first, behind):
+        room[i] = kept[2 + i]
+    if kept[1] != 0.0:
+        whole(ev)[UNSHARED] = int(kept[1])
+    return True
+
+
+@internal
+def _keep_solved(ev: Any, n: int, unshared: int) -> None:
+    size = 9 * n * n + 11 * n
+    room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
+    kept[0], kept[1] = n, unshared
+    for i in range(size):
+        kept[2 + i] = room[i]
+
+
+@internal
+def _solve_in_room(ev: Any, n: int, who: int) -> bool:
+    """Forces of the problem of n contacts in the room, of which `who` is one."""
+    own = mat(ev.space_room, 3 * n, 3 * n)
+    room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
+    own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
+    own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
+    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 2, n)
     work, least_norm = ev.space_room + 8 * (9 * n * n + 11 * n), cones_at(ev.cones).least_norm
-    found, plane = False, n > 1 and has_one_tangent(n, own)
+    found, plane, unshared = False, n > 1 and has_one_tangent(n, own), 0
     # few contacts: sweeps are faster than pivoting, but for those that take many; many contacts: the other way round
     for attempt in range(3):
         if found or (attempt < 2 and not plane) or (attempt == 0 and n > MANY):
@@ -168,8 +212,7 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
     if n > 1 and _repeat(ev, n, own, own_b, own_known, own_p, work):
         shared = take_least_forces(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
         if not shared:
-            whole(ev)[UNSHARED] = 1 + ivec(ev.contacts, ev.most)[some[0]]
-    for i in range(n):
-        for block in range(3):
-            p[block * count + some[i]] = own_p[block * n + i]
+            whole(ev)[UNSHARED] = unshared = 1 + ivec(ev.contacts, ev.most)[who]
+    if n > 1:
+        _keep_solved(ev, n, unshared)
     return True

@@ -55,7 +55,11 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
     scale, static = vec(ws.row_scale, ws.m_ext), vec(ws.contact_sticking, ws.n_contacts)
     was, slid, leaves, slips, stops = col(ev, WAS), col(ev, SLID), col(ev, LEAVES), col(ev, SLIPS), col(ev, STOPS)
     forces, braked = force_level(ws), BRAKED * largest_acceleration(ws)
-    whole(ev)[STRUCK] = 0
+    whole(ev)[STRUCK], pulled = 0, False
+    for i in range(whole(ev)[COUNT]):
+        # the forces of others behind a jump, where a constraint that has ended still pulls, are none
+        k = contacts[i]
+        pulled = pulled or (memory[k, MODE] == CLOSED and lam[rows[k]] * scale[rows[k]] > NEAR_ZERO * forces)
     for i in range(whole(ev)[COUNT]):
         k = contacts[i]
         row, slide = rows[k], slides[k]
@@ -80,7 +84,7 @@ def read_before(ev: Any, dr: Any, ws: Any) -> None:
         part = force / strongest
         if is_held(ws, k):
             friction = held_friction(ws, k, lam) if in_space(ws, k) else -lam[slide]
-            if abs(friction) >= static[k] * force * (1.0 - REACHES_LIMIT):
+            if not pulled and abs(friction) >= static[k] * force * (1.0 - REACHES_LIMIT):
                 slips[i] = -np.sign(friction)
             else:
                 leaves[i] = part <= NEAR_ZERO

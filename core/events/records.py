@@ -46,6 +46,7 @@ INSTANT = np.dtype(
             "massless_rates",            # (n_contacts,) float64
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
+            "space_kept",                # the last problem that was solved, and its forces (`rates.py`)
             "sweeps", "columns",         # room for `impulse_step.py`: float64 and int64
             "block_wholes", "block_reals",  # and for `contact_solvers/contact_blocks.py`
         )

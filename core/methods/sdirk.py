@@ -120,9 +120,10 @@ def _take_over(ws: Any) -> None:
 
 
 @internal
-def _in_unequal_parts(ws: Any, t: float, h: float) -> int:
-    """A step over a jump, from the base: parts that keep the embedded error below one are short only about there."""
-    done, size, least = 0.0, h / EQUAL_PARTS, LEAST_PART * h
+def _in_unequal_parts(ws: Any, t: float, h: float, parts: int) -> int:
+    """A step over a jump, from the base: parts that keep the embedded error below one are short only about there. The
+    first is one of so many equal ones."""
+    done, size, least = 0.0, h / parts, LEAST_PART * h
     while done < h:
         last = size >= h - done
         part = h - done if last else size
@@ -142,8 +143,9 @@ def _in_unequal_parts(ws: Any, t: float, h: float) -> int:
 @internal
 def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
-    do not spoil the order of a fixed-step multistep method. Where that takes very many, something jumps inside."""
-    parts = 1
+    do not spoil the order of a fixed-step multistep method. Where that takes very many, or the error falls more slowly
+    than the square of their size, something jumps inside."""
+    parts, before, error = 1, 1, np.inf
     while True:
         base_from_row(ws, ms)
         t = history_time(ms, 0)
@@ -159,10 +161,12 @@ def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
             _take_over(ws)
         if worst <= 1.0:
             break
+        jumps = worst * parts**2 > error * before**2
+        before, error = parts, worst
         parts = max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1)
-        if parts > EQUAL_PARTS:
+        if jumps or parts > EQUAL_PARTS:
             base_from_row(ws, ms)
-            status = _in_unequal_parts(ws, t, h)
+            status = _in_unequal_parts(ws, t, h, parts)
             if status != OK:
                 return status
             break

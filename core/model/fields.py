@@ -91,7 +91,8 @@ def _kind(annotation: Any, metadata: Iterable[Any]) -> str:
         ]
         if "Literal" in inner:
             return "one of " + ", ".join(re.findall(r"'([^']+)'", text))
-        what = " or ".join(dict.fromkeys(records[:3] or [words[w] for w in inner]))
+        either = ["number"] if records and float in options else []
+        what = " or ".join(dict.fromkeys([*either, *records[:3]] or [words[w] for w in inner]))
         if "tuple[" in text:
             return f"list of {what}{'' if records else 's'}" if what else "list"
         return what

@@ -205,8 +205,8 @@ class Collocation:
     def _left(self) -> Floats:
         """What accelerations leave of the constraints, and multipliers of the rows of compatibility: its negative."""
         structure, arrays = self.workspace.structure, self.workspace.arrays
-        shares = structure.compatibility.reshape(structure.n_implied, len(structure.sharing))
-        shared = shares @ arrays["lam"][self.rows[structure.sharing]]
+        parts = structure.compatibility * arrays["lam"][self.rows[structure.sharing]]
+        shared = np.bincount(structure.sharing_row, parts, structure.n_implied)
         return -np.concatenate([arrays["phidd"][self.active], shared])
 
     def _values(self, c_q: float, c_v: float) -> Floats:

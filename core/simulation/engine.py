@@ -49,6 +49,7 @@ from .ready import make_ready
 from .settings import START_TOLERANCE, Settings, set_control
 from .setup import build_loop, build_method, state_fields
 from .start import begin
+from .surface_jumps import refuse_surface_jumps
 from .unbounded import warn_of_unbounded
 
 logger = logging.getLogger(__name__)
@@ -113,6 +114,7 @@ class Engine(ContactSide):
         if not isinstance(system, Model) and not _is_equations(system):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
         self.system = system
+        refuse_surface_jumps(system, self.formula, method)
         self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()
         warn_of_unbounded(self.assembly)
         self.workspace = Workspace(self.assembly, state_fields(self.assembly))

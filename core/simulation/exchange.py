@@ -22,6 +22,7 @@ from ..errors import ModelError
 from ..event_detection.dense_output import query, query_motion
 from ..events.event_handling import begin_anew
 from ..events.inconsistent_modes import find_unsettled
+from ..events.moved_surfaces import find_moved
 from ..events.records import instant_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
@@ -109,6 +110,13 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
     rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
     rates = mat(ex.rates, n, RATES_SIZE)
     t, newest = times[NOW], history_time(ms, 0)
+    # the motion up to now is that of the inputs up to now: velocities of surfaces would be met with the new ones
+    if t == newest:
+        recall(ws, ms, 0)
+        status = OK
+    else:
+        status = call_query(ex.query, ws, ms, t)
+        vec(ws.t, 1)[0] = t
     for k in range(n):
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
@@ -116,16 +124,13 @@ def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
             rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST], rates[k, SECOND]
             # since when does not matter to what stays as it is
             rows[k, INPUT_SIZE - 1] = t if rows[k, 1] != 0.0 or rows[k, 2] != 0.0 else 0.0
-    if t == newest:
-        recall(ws, ms, 0)
-        status = OK
-    else:
-        status = call_query(ex.query, ws, ms, t)
-        vec(ws.t, 1)[0] = t
     if status == OK:
         status = call_accelerations(ex.accelerations, ws)
-    unsettled = ivec(ev.unsettled, ws.n_contacts)
-    if status != OK or (find_unsettled(ev, ws, unsettled) and decline):
+    unsettled, some = ivec(ev.unsettled, ws.n_contacts), False
+    if status == OK:
+        some = find_unsettled(ev, ws, unsettled)
+        some = find_moved(ws, ms, unsettled) or some
+    if status != OK or (some and decline):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]

@@ -9,7 +9,7 @@ from ..errors import ModelError
 from ..model.signals import MOST_DERIVATIVES
 from ..rounding import PUNCTUAL, SAME_INPUT
 from . import motions
-from .restore import restart_here
+from .restore import go_to_present, restart_here
 from .start import start_again
 
 if TYPE_CHECKING:
@@ -29,6 +29,9 @@ def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapp
         return
     before, pending, moved = rows.copy(), sim.pending, motions.led_by(sim, changed)
     start = bool(moved) and motions.at_start(sim)
+    if not start:
+        # the motion up to now is that of the inputs up to now
+        go_to_present(sim)
     for k, new in changed.items():
         rows[k] = (*new, t if any(new[1:]) else 0.0)  # since when does not matter to what stays as it is
     motions.lead(sim, moved)
@@ -36,7 +39,7 @@ def set_inputs(sim: "Simulation", values: Mapping[str, float], derivatives: Mapp
         if start:
             start_again(sim)
         else:
-            restart_here(sim)
+            restart_here(sim, is_present=True)
     except BaseException:
         rows[:], sim.pending = before, pending
         if start:

@@ -109,8 +109,8 @@ def _same(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
     return a is b or a.tobytes() == b.tobytes()
 
 
-def restart_here(sim: "Simulation") -> None:
-    """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed)."""
+def go_to_present(sim: "Simulation") -> None:
+    """Let the present time `sim.t` be that of the workspace's point. Raises SimulationError where no state is found."""
     ws, ms = sim.workspace.record, sim._method.record
     if sim.t == sim.t_internal:
         recall(ws, ms, 0)
@@ -121,6 +121,14 @@ def restart_here(sim: "Simulation") -> None:
             t=sim.t,
             loop="inner",
         )
+
+
+def restart_here(sim: "Simulation", is_present: bool = False) -> None:
+    """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed).
+    is_present : the workspace's point is that of the present time already."""
+    ws = sim.workspace.record
+    if not is_present:
+        go_to_present(sim)
     if sim.t != sim.t_internal:
         sim.pending = []
         _drop_records(sim)

@@ -70,14 +70,16 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     ModelError : says what is wrong with which part.
     """
     _check_facts(sim, state)
-    closed, sticking, implied = (frozenset(state.facts[name]) for name in ("closed", "sticking", "implied"))
-    active, held = sim.assembly.count_active(closed, sticking, frozenset(state.facts["dropped"]), implied)
-    sharing = len(implied) * (len(closed) + len(sticking))
+    closed, sticking, implied, dropped = (
+        frozenset(state.facts[name]) for name in ("closed", "sticking", "implied", "dropped")
+    )
+    active, held = sim.assembly.count_active(closed, sticking, dropped, implied)
+    sharing = len(implied) * (len(closed) + len(sticking)) + sim.workspace.joints_sharing(dropped, closed)
     _check_arrays(state, own, {"dependent": active, "probe": active, "compatibility": sharing})
     arrays = state.arrays
     _need("dependent", len(set(arrays["dependent"].tolist())) == len(arrays["dependent"]), "names a coordinate twice")
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
-    _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + len(implied) + sim.assembly.n)
+    _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + len(implied) + len(dropped) + sim.assembly.n)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
     _check_clock(arrays["clock"], own.arrays["clock"])

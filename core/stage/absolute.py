@@ -108,7 +108,7 @@ def solve_rows(ws: Any, c_q: float, c_v: float, index: int) -> None:
             rhs[n + i] = -phid[k] / c_v
         else:
             rhs[n + i] = -phi[k] / c_q
-    left_of_sharing(ws)
+    left_of_sharing(ws, False)
     solve(lu_at(ws.kkt), ws.rhs)
 
 

@@ -73,7 +73,7 @@ def solve_increment(ws: Any, lu_address: int) -> None:
         rhs[i] = -r[i]
     for i in range(ws.m_act):
         rhs[ws.n + i] = -phidd[active[i]]
-    left_of_sharing(ws)
+    left_of_sharing(ws, False)
     solve(lu_at(lu_address), ws.rhs)
 
 

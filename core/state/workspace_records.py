@@ -68,8 +68,10 @@ STRUCTURE = np.dtype(
             "nnz",                                    # entries of the matrix
             # Phi_q by rows, of the active ones
             "n_jacobian", "jacobian_start", "jacobian_row", "jacobian_col", "jacobian_slot",
-            # rows of compatibility, (n_implied, n_sharing): places of the multipliers that they are of, slots, numbers
-            "n_sharing", "sharing", "sharing_slot", "compatibility",
+            # rows of compatibility: where each begins, (n_implied + 1,); which are found by the same solution,
+            # (n_implied,); places of the multipliers that they are of, slots, numbers, (n_sharing,)
+            "n_sharing", "sharing_start", "sharing_color", "sharing", "sharing_slot", "compatibility",
+            "sharing_kept",                           # those numbers while a point is asked for
             "partition",                              # address of its PARTITION record
             "built", "serial", "used",                # 1: it is one; a number that no other has; when it was taken last
             # memory for its integers and its numbers, and how many there is room for
@@ -103,6 +105,9 @@ BUILDING = np.dtype(
             "listed",                                   # (contacts,) int64: 1: its rows' gradients are always listed
             "n_replaced", "replaced_row", "replaced_contact",  # rows that closed contacts take the place of
             "left_out", "dropped",                      # (m_ext,) int64: 1 for redundant rows; number of this set
+            # (m_ext,): relative compliance of each row; number of the mechanism that the row of a joint is of
+            "compliance", "mechanism",
+            "loads_felt",                               # 1: forces depend on the loads of joints
             "contact_rows", "contact_slide_rows", "contact_second_rows",  # (contacts,) int64; -1: none
             "rate_rows", "two_partitions",              # (m_ext,) int64: 1 for velocity-level rows; 1: there are some
             "units",                                    # (n + m_ext,) what brings coordinates and rows to one unit

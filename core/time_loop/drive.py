@@ -16,6 +16,7 @@ from ..event_detection.event_search import locate
 from ..event_detection.repivoting import orientation
 from ..events.event_handling import go_on_behind, settle
 from ..events.inconsistent_modes import find_unsettled
+from ..events.moved_surfaces import find_moved
 from ..events.records import ALONE, DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, whole
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
@@ -214,9 +215,11 @@ def pass_breakpoint(dr: Any) -> int:
 
 @compiled
 def unsettled_now(dr: Any) -> bool:
-    """`find_unsettled` at the current point, for Python."""
+    """Contacts that do not fit the forces, or the speeds of their surfaces, at the current point, for Python."""
     ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
-    return find_unsettled(ev, ws, ivec(ev.unsettled, ws.n_contacts))
+    unsettled = ivec(ev.unsettled, ws.n_contacts)
+    found = find_unsettled(ev, ws, unsettled)
+    return find_moved(ws, method_at(dr.method), unsettled) or found
 
 
 @compiled

@@ -13,6 +13,7 @@ from ..assembly.evaluate import evaluate_energy, recorded_norm
 from ..assembly.sticking_force import in_space
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
+from ..event_detection.joint_loads import share_joint_loads
 from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, MODE, OPEN, PUSHED, SLIDE
 
 
@@ -44,6 +45,8 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
         out[at + i] = 0.0
     for i in range(ws.m_act + ws.n_implied):
         out[at + active[i]] = lam[active[i]]
+    if ws.n_redundant > 0:
+        share_joint_loads(ws, out[at : at + m])
     at += m
     if contacts:
         monitor = vec(ws.monitor, 2 * contacts)

@@ -13,8 +13,10 @@ from tlismni.core import (
     Hertz,
     HuntCrossley,
     KelvinVoigt,
+    LuGreFriction,
     Model,
     NewtonImpact,
+    Sine,
     Sphere3D,
     SphereOnHalfSpace3D,
     SphereOnSphere3D,
@@ -40,6 +42,19 @@ def on_sphere(law, a, b, **more):
     return SphereOnSphere3D(name="c", a=first, b=second, law=law, **more)
 
 
+def on_belt(law, a, b, **more):
+    """A surface of the first shape that moves, not along the tangent alone."""
+    belt = {"surface_speed": SPEED, "surface_direction": (0.8, -0.5, 0.3)}
+    return on_plane(law, a, b, **(belt if more.get("friction") is not None else {}), **more)
+
+
+def on_tracks(law, a, b, **more):
+    """The same of the second shape."""
+    tracks = {"surface_speed": SPEED, "surface_direction": (0.8, -0.5, 0.3), "surface_body": b.body}
+    return on_sphere(law, a, b, **(tracks if more.get("friction") is not None else {}), **more)
+
+
+SPEED = Sine(amplitude=1.3, angular_frequency=2.0, phase=0.4, offset=0.8)
 KELVIN = KelvinVoigt(stiffness=4.0, damping=0.8)
 HUNT = HuntCrossley(stiffness=3.0, exponent=1.5, restitution=0.6, release_rule="gap")
 PLACES = {"two bodies": (LEFT, RIGHT), "ground": (GROUND, RIGHT), "a point mass": (LEFT, MASS)}
@@ -70,6 +85,17 @@ CASES |= {
     for where, ends in TURNABLE.items()
     for law, friction in ((KELVIN, TANH), (HUNT, PEAK))
 }  # fmt: skip
+
+BRISTLY = LuGreFriction(
+    bristle_stiffness=3.0, bristle_damping=0.5, viscous_damping=0.2, coefficient=0.4, static_coefficient=0.6,
+    stribeck_speed=1.5,
+)  # fmt: skip
+CASES |= {
+    f"{shape.__name__}, {where}, {law.type}, {friction.type}": (shape(law, *ends, friction=friction), ACTIVE)
+    for shape in (on_belt, on_tracks)
+    for where, ends in TURNABLE.items()
+    for law, friction in ((KELVIN, TANH), (KELVIN, BRISTLY))
+}
 
 
 def system(case):
@@ -117,7 +143,8 @@ def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_lev
     check()
 
 
-@pytest.mark.parametrize("case", CASES)
+# (bristles are coordinates of their own)
+@pytest.mark.parametrize("case", [case for case in CASES if not case.endswith("LuGre")])
 def test_contact_forces_really_act_in_these_tests(case):
     point, free = system(case), Point(Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B]))
     for seed in range(5):
@@ -141,7 +168,7 @@ def gripping(shape, where, slide, turning=None):
     if slide is not None:
         twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
         point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
-        axis = 1 if shape is on_plane else (3 if where == "a point mass" else 2)
+        axis = 1 if shape in (on_plane, on_belt) else (3 if where == "a point mass" else 2)
         columns = [MODE, SLIDE, RATIO, WAY, AXIS, LEAN]
         lean = 0.5 if slide == 1.0 and turning is PATCH else 0.0
         point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis, lean
@@ -159,7 +186,7 @@ def forward(point, state):
     return x > 0.3 * arrays["phid"][first + 1]
 
 
-@pytest.mark.parametrize("shape", [on_plane, on_sphere])
+@pytest.mark.parametrize("shape", [on_plane, on_sphere, on_belt, on_tracks])
 @pytest.mark.parametrize(
     ("where", "turning"),
     [*((where, None) for where in PLACES), *((where, turns) for where in TURNABLE for turns in (TURNS, PATCH))],
@@ -188,7 +215,7 @@ def test_tangent_of_coulomb_friction(shape, where, slides, turning):
     check()
 
 
-@pytest.mark.parametrize("shape", [on_plane, on_sphere])
+@pytest.mark.parametrize("shape", [on_plane, on_sphere, on_belt, on_tracks])
 @pytest.mark.parametrize("turning", [None, PATCH], ids=["point", "patch"])
 @pytest.mark.parametrize("slides", SLIDES)
 def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides, turning):

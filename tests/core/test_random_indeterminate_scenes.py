@@ -3,12 +3,14 @@
 `benchmarks/indeterminate_scenes.py` runs a thousand of them.
 """
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 from dense_contacts import contact_problem
 from indeterminate_scenes import permuted, scene, turned
 from regularised_contacts import rigid_forces
-from scene_checks import deviations, wrong
+from scene_checks import deviations, first_forces, reference_forces, wrong
 from tlismni.core import (
     CoulombFriction,
     HalfSpace3D,
@@ -18,11 +20,14 @@ from tlismni.core import (
     RigidBody3D,
     Sphere3D,
     SphereOnHalfSpace3D,
+    simulate,
 )
 
 G = 9.81
-PLANE, SPACE = range(2010, 2032), (*range(3001, 3004), *range(3005, 3015))
+PLANE, SPACE = range(2009, 2032), (*range(3001, 3004), *range(3005, 3015))
 """Seeds."""
+EDGES = (191, 701, 873)
+"""Of stacks whose corners pass edges, in the plane: the force of a contact jumps, and with it that of others."""
 
 
 @pytest.mark.parametrize("seed", PLANE)
@@ -35,8 +40,28 @@ def test_spatial_scene_is_that_of_any_order_and_units(seed):
     _examine(scene(seed, 3))
 
 
-def _examine(drawn):
-    found, tight = deviations(drawn, orders=1)
+@pytest.mark.parametrize("seed", EDGES)
+def test_corner_passes_an_edge_alike_in_any_order_and_units(seed):
+    drawn = scene(seed)
+    assert drawn.kind.startswith("stack2")
+    _examine(drawn, orders=2)
+
+
+def test_forces_in_a_groove_are_those_of_any_order():
+    """Three feet on one side, at the limit of their friction, and one on the other: in two of all orders the way to
+    their least forces was lost, and two feet carried nothing."""
+    drawn = scene(14)
+    problem = contact_problem(drawn.model)
+    wanted = reference_forces(rigid_forces(problem), planar=True)
+    for order in permutations(drawn.model.contacts):
+        result = simulate(drawn.model.model_copy(update={"contacts": list(order)}), 0.02 * drawn.end, drawn.method)
+        assert result.stats["unshared_loads"] == 0
+        found = first_forces(result, problem.names, planar=True)
+        np.testing.assert_allclose(found, wanted, atol=1e-8 * np.abs(wanted).max())
+
+
+def _examine(drawn, orders=1):
+    found, tight = deviations(drawn, orders)
     assert not wrong(found, tight), f"{drawn.kind} by {drawn.method}: {found}; {tight}"
 
 

@@ -73,8 +73,9 @@ def test_corners_are_passed_without_a_blow():
 def test_ten_blocks():
     result = simulate(stack(10, 5, 300.0), 0.3)
     check_energies(result, 1e-6)
-    # a corner that is passed changes the forces of all contacts at one instant: they share one search for it
-    assert result.stats["stages"] < 30_000
+    # a corner that is passed changes the forces of all contacts at one instant: they share one search for it, and steps
+    # over it are made in unequal parts
+    assert result.stats["stages"] < 6_000
 
 
 @pytest.mark.parametrize("method, pulled, ends", [("ebdf", 6, 0.33), ("hht", 8, 0.37), ("irk", 5, 0.32)])

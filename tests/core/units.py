@@ -22,7 +22,7 @@ DIMENSIONS: dict[str, tuple[float, float, float]] = {
     "bending_stiffness": (3, 1, -2), "bending_damping": (3, 1, -1), "axial_damping": (1, 1, -1),
     "reference_curvature": (-1, 0, 0), "rotary_inertia": (1, 1, 0), "damping_time": (0, 0, 1),
     "minimum_approach_speed": SPEED, "stribeck_speed": SPEED, "transition_speed": SPEED, "lower_speed": SPEED,
-    "upper_speed": SPEED, "stiction_speed": SPEED, "sliding_speed": SPEED,
+    "surface_speed": SPEED, "upper_speed": SPEED, "stiction_speed": SPEED, "sliding_speed": SPEED,
     "bristle_stiffness": (0, 1, -2), "bristle_damping": (0, 1, -1), "viscous_damping": (0, 1, -1),
 }  # fmt: skip
 # of those that need the record's type
@@ -103,6 +103,8 @@ class Units:
         if isinstance(value, dict):
             if "type" in value and key in SIGNALS:
                 return self._signal(value, signal)
+            if key == "surface_speed":
+                return self._signal(value, SPEED)
             inner = value.get("type", key)
             if key == "law":
                 return self._law(value)

@@ -54,6 +54,17 @@ def test_the_page_on_the_friction_of_joints_runs() -> None:
     assert abs(held) < 1e-15 and fell < -1e-6
 
 
+def test_the_page_on_surfaces_that_move_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "surface-speed.md"
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.S):
+        exec(block, names)
+    assert names["stick"].t == pytest.approx(0.9 / (0.3 * 9.81), abs=1e-9)
+    assert names["carried"]["energy.input_work"][-1] == pytest.approx(2.0 * 0.9**2, rel=1e-8)
+    assert names["slip"].t == pytest.approx(0.5 * 0.4 * 9.81, abs=1e-6)
+    assert names["falls"]["case.angle"][-1] < -0.1
+
+
 def test_every_kind_and_field_of_an_event_stands_in_the_table() -> None:
     table = PAGE.split("## Events")[1].split("##")[0]
     assert Event.__doc__ is not None

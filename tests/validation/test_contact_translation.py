@@ -23,6 +23,7 @@ from tlismni.core.laws import (
     NewtonImpact,
 )
 from tlismni.core.laws.damping_ratio import restitution_without_pull
+from tlismni.core.laws.friction import TanhFriction
 from tlismni.core.model.markers import Marker2D
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available, import_exudyn
@@ -190,6 +191,16 @@ def point_mass_in_a_prismatic_joint() -> Model:
     return Model(bodies=(PointMass2D(name="p", mass=1.0),), joints=(joint,))
 
 
+def drop_on_a_belt() -> Model:
+    body = PointMass2D(name="ball", mass=1.0, position=(0.0, 1.0))
+    disk, friction = Disk2D(marker=Marker2D(body="ball")), TanhFriction(coefficient=0.3, transition_speed=0.01)
+    contact = DiskOnHalfPlane2D(
+        name="floor", plane=HalfPlane2D(), disk=disk, law=KelvinVoigt(stiffness=K, damping=1.0), friction=friction,
+        surface_speed=0.5,
+    )  # fmt: skip
+    return Model(bodies=[body], contacts=(contact,))
+
+
 def drop_on_a_segment() -> Model:
     disk = Disk2D(marker=Marker2D(body="ball"), radius=0.1)
     contact = DiskOnSegment2D(name="floor", segment=Segment2D(length=1.0), disk=disk, law=Hertz(stiffness=K))
@@ -215,6 +226,7 @@ def drop_on_a_line() -> Model:
         (floating_beam, "'beam' is a FloatingBeam2D.*nearest route: a Cable2D"),
         (massless_rod, "massless ends"),
         (newton_drop, "constraint .* limit"),
+        (drop_on_a_belt, "surface that moves past its body .* driver"),
         (point_mass_in_a_prismatic_joint, "point mass: make it a RigidBody2D"),
         (lambda: "not a model", "only a Model"),
     ],

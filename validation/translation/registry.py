@@ -51,6 +51,12 @@ def no_equal(route: str, *records: type) -> None:
 def translate(record: Any, build: "Build") -> None:
     """Add the exudyn equal of `record`. Raises NotTranslatable if there is none, or a redundant equation stays."""
     translator = find_translator(record)
+    if getattr(record, "surface_speed", None) is not None:
+        raise NotTranslatable(
+            f"contact '{record.name}' has a surface that moves past its body (surface_speed), of which exudyn's "
+            "contacts have no equal. The nearest route: a half-plane, half-space or disk on a body that a driver "
+            "moves, as long as the shape does not end"
+        )
     if getattr(record, "name", None) in build.redundant and not can_free(record):
         rows = ", ".join(str(row) for row in sorted(build.redundant[record.name]))
         raise NotTranslatable(
