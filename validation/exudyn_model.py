@@ -7,7 +7,7 @@ from .errors import NotTranslatable
 from .exudyn_import import import_exudyn
 from .translation import Build, translate
 from .translation.laid_contacts import laid_contacts
-from .translation.redundant import redundant_rows
+from .translation.redundant import drop_shared_loads, redundant_rows
 
 
 def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset[str] = frozenset()) -> Build:
@@ -35,6 +35,7 @@ def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset
     )  # fmt: skip
     for element in model.elements():
         translate(element, build)
+    drop_shared_loads(build)
     if model.inputs:
         names = ", ".join(f"{i.name} = {i.start:g} {i.unit}" for i in model.inputs)
         build.notes.append(f"input channels keep their start values: {names}")

@@ -65,7 +65,7 @@ def _matrices(sim: Any) -> tuple[NDArray[np.float64], ...]:
         sim.sample()
         structure, record = sim.workspace.structure, sim.workspace.record
         rows, cols, nnz = structure.rows, structure.cols, structure.nnz
-        size = n + len(structure.active)
+        size, held = n + len(structure.multiplier_rows), n + structure.m_act
         full = []
         for c_q in (0.0, 1.0):
             evaluate_tangent(record, c_q, 0.0)
@@ -82,7 +82,7 @@ def _matrices(sim: Any) -> tuple[NDArray[np.float64], ...]:
             evaluate_residuals(record)
             loads[:, k] = at_rest - arrays["r"][:n]
             inputs[k, 0] = 0.0
-        return full[0][:n, :n], full[1][:n, :n] - full[0][:n, :n], full[0][n:, :n], loads
+        return full[0][:n, :n], full[1][:n, :n] - full[0][:n, :n], full[0][n:held, :n], loads
     finally:
         sim.restore(before)
 

@@ -152,9 +152,12 @@ def _mangled(module: str) -> str:
 _SELDOM = tuple(
     _mangled(module)
     for module in (
-        "analysis", "contact_solvers", "contacts.bristle3d", "contacts.scalar_contact2d", "elements.measure3d",
-        "elements.pid_controller2d", "event_detection.contact_evaluation", "events", "linalg.analyze",
-        "methods.frame_choice", "methods.frames", "recovery", "simulation", "stage.corotating",
+        "analysis", "assembly.building", "assembly.entries", "assembly.matrix_state", "assembly.partition_building",
+        "assembly.structure_tables", "contact_solvers", "contacts.bristle2d", "contacts.bristle3d",
+        "contacts.scalar_contact2d", "elements.measure3d", "elements.pid_controller2d",
+        "event_detection.contact_evaluation", "event_detection.joint_loads", "event_detection.repivoting", "events",
+        "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice", "methods.frames",
+        "recovery", "simulation", "stage.corotating", "stage.jfnk", "stage.simple", "time_loop.time_stepping",
     )
 )  # fmt: skip
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""

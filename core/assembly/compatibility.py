@@ -21,8 +21,6 @@ last serve to find the present ones.
 
 from typing import Any
 
-import numpy as np
-
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
@@ -47,7 +45,8 @@ def list_sharing(
         if write:
             start[p] = count
         for i in range(b.m_joints if own < b.m_joints else 0):
-            if matrix_col[i] >= 0 and mechanism[i] == mechanism[own] and compliance[i] > 0.0:
+            shares = mechanism[i] == mechanism[own] and (compliance[i] > 0.0 or i == own)
+            if matrix_col[i] >= 0 and shares:
                 if write:
                     sharing[count] = matrix_col[i] - b.n
                 count += 1
@@ -138,29 +137,39 @@ def solve_equations(ws: Any, lu_address: int) -> None:
 
 
 @internal
-def _still_null(ws: Any, st: Any, p: int, total: Any) -> bool:
-    """True if row p of compatibility, of a contact, still is a null vector of the gradients evaluated last, as finely
-    as it was found. `total` (n,): room. Where joints take part in it, whose multipliers are none of its entries, it is
-    not known to be one."""
-    values, scale, n, m_act, size = vec(ws.values, ws.n_values), vec(ws.scale, ws.n), ws.n, ws.m_act, 0.0
-    count, starts = ws.n_values, ivec(ws.gradient_start, ws.m_ext)
+def _load_gradients(ws: Any, st: Any, color: int, first: int) -> None:
+    """Sum of the gradients of implied rows of this color, from `first` on, to `rhs`."""
+    rhs, count = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ws.n_values
+    columns, slots, values = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count), vec(ws.values, count)
+    starts, active = ivec(ws.gradient_start, ws.m_ext), ivec(ws.active, ws.m_act + ws.n_implied)
+    colors = ivec(st.sharing_color, st.n_implied)
+    rhs[:] = 0.0
+    for p in range(first, ws.n_implied):
+        if colors[p] == color:
+            row = active[ws.m_act + p]
+            for e in range(starts[row], starts[row + 1]):
+                rhs[columns[e]] += values[slots[e]]
+
+
+@internal
+def _still_null(ws: Any, st: Any, p: int) -> bool:
+    """True if row p of compatibility, that of the contact whose gradient is in `rhs`, still is a null vector of the
+    gradients evaluated last, as finely as it was found; changes `rhs`. Where joints take part in it, whose multipliers
+    are none of its entries, it is not known to be one."""
+    n, m_act, size = ws.n, ws.m_act, 0.0
+    rhs, scale, values = vec(ws.rhs, n), vec(ws.scale, n), vec(ws.values, ws.n_values)
     start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows = vec(st.compatibility, st.n_sharing)
-    columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
-    own_start, own = ivec(st.jacobian_start, m_act + 1), st.n_jacobian
-    own_col, own_slot = ivec(st.jacobian_col, own), ivec(st.jacobian_slot, own)
-    row = ivec(ws.active, m_act + ws.n_implied)[m_act + p]
+    rows, own = vec(st.compatibility, st.n_sharing), st.n_jacobian
+    own_start, own_col = ivec(st.jacobian_start, m_act + 1), ivec(st.jacobian_col, own)
+    own_slot = ivec(st.jacobian_slot, own)
     for i in range(n):
-        total[i] = 0.0
-    for e in range(starts[row], starts[row + 1]):
-        total[columns[e]] += values[slots[e]]
-        size = max(size, scale[columns[e]] * abs(values[slots[e]]))
+        size = max(size, scale[i] * abs(rhs[i]))
     for j in range(start[p], start[p + 1]):
         if sharing[j] < m_act and rows[j] != 0.0:
             for e in range(own_start[sharing[j]], own_start[sharing[j] + 1]):
-                total[own_col[e]] += rows[j] * values[own_slot[e]]
+                rhs[own_col[e]] += rows[j] * values[own_slot[e]]
     for i in range(n):
-        if scale[i] * abs(total[i]) > STILL_COMPATIBLE * size:
+        if scale[i] * abs(rhs[i]) > STILL_COMPATIBLE * size:
             return False
     return True
 
@@ -171,35 +180,29 @@ def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
     valid before; False if these are still valid."""
     st, b = structure_at(ws.structure), building_at(ws.building)
     n, m_act, changed = ws.n, ws.m_act, False
-    size = n + m_act + ws.n_implied
     start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    rows, colors = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
     compliance, units = vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
-    rhs, active, values = vec(ws.rhs, size), ivec(ws.active, m_act + ws.n_implied), vec(ws.values, ws.n_values)
-    starts, count = ivec(ws.gradient_start, ws.m_ext), ws.n_values
-    columns, slots = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count)
-    first, end, total = _first_shared(ws, joints), ws.n_implied, np.empty(n)
-    now = color[first] if first < end else 0
-    while first < end:
-        for i in range(size):
-            rhs[i] = 0.0
-        left, needed = False, False
-        for p in range(first, end):
-            left = left or color[p] > now
-            if color[p] == now:
-                row = active[m_act + p]
-                # (most of a structure's rows are of bodies that do not move against each other)
-                needed = needed or row < b.m_joints or not _still_null(ws, st, p, total)
-                for e in range(starts[row], starts[row + 1]):
-                    rhs[columns[e]] += values[slots[e]]
-        if needed:
+    rhs, active = vec(ws.rhs, n + m_act + ws.n_implied), ivec(ws.active, m_act + ws.n_implied)
+    first = _first_shared(ws, joints)
+    color = colors[first] if first < ws.n_implied else 0
+    while first < ws.n_implied:
+        _load_gradients(ws, st, color, first)
+        left, contact = False, -1
+        for p in range(first, ws.n_implied):
+            left = left or colors[p] > color
+            if colors[p] == color and active[m_act + p] >= b.m_joints:
+                contact = p
+        # (most rows of contacts are of bodies that do not move against each other)
+        still = contact >= 0 and _still_null(ws, st, contact)
+        if not still:
+            if contact >= 0:
+                _load_gradients(ws, st, color, first)
             solve_transposed(lu_at(lu_address), ws.rhs)
-        for p in range(first, end):
-            if not needed or color[p] != now:
-                continue
+        for p in range(first, ws.n_implied):
             row = active[m_act + p]
             own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
-            for e in range(start[p], start[p + 1]):
+            for e in range(start[p], start[p + 1] if colors[p] == color and not still else start[p]):
                 at = sharing[e]
                 new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
                 new *= compliance[active[at]] / own
@@ -208,7 +211,7 @@ def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
                     rows[e] = new
         if not left:
             break
-        now += 1
+        color += 1
     return changed
 
 

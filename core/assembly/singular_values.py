@@ -72,6 +72,8 @@ class ScaledJacobian:
     @property
     def blocks(self) -> list[Block]:
         """The matrix by mechanisms."""
+        if self.shape[0] == 0:
+            return []
         number = mechanisms(*self.shape, self.rows, self.cols)
         order, by_row = np.argsort(number[self.rows], kind="stable"), np.argsort(number, kind="stable")
         found = []
@@ -143,7 +145,7 @@ def singular_directions(workspace: Workspace, matter: float = np.inf) -> tuple[F
     found = _smallest(jacobian, jacobian.shape[0] - rank + DIRECTIONS) if matter < np.inf else None
     if found is not None and found[0][0] >= matter:
         return found[0][:DIRECTIONS], found[1][:DIRECTIONS]
-    parts, directions = [], []
+    parts, directions = [np.zeros(0)], [np.zeros((0, jacobian.shape[1]))]
     for block in jacobian.blocks:
         _, values, local = np.linalg.svd(block.matrix, full_matrices=False)
         whole = np.zeros((len(values), jacobian.shape[1]))

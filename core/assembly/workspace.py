@@ -406,7 +406,10 @@ class Workspace:
         compliance, mechanism = joint_compliance(self.assembly)
         of_joints = np.arange(self.assembly.m_joints)
         shares = (compliance[of_joints] > 0.0) & ~np.isin(of_joints, sorted(replaced))
-        return sum(int(np.sum(shares & (mechanism[of_joints] == mechanism[row]))) for row in dropped - replaced)
+        return sum(
+            int(np.sum((shares & (mechanism[of_joints] == mechanism[row])) | (of_joints == row)))
+            for row in dropped - replaced
+        )
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; they share the load with those that imply them."""

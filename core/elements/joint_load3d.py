@@ -32,8 +32,7 @@ def joint_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
 class JointLoad(Derived):
     """Force (N) and torque (N m) of a joint on its body b at the point of marker b, along the axes of marker a.
 
-    Rows that repeat others are left out of the equations and have no multiplier: the forces of redundant joints are
-    then one of the many ways in which they may share the load.
+    Joints that repeat each other share their loads as equally compliant ones do (`assembly/joint_compliance.py`).
     """
 
     kernel = joint_load

@@ -49,8 +49,8 @@ class Result:
     stats : steps, rejected, outer_iterations, inner_iterations, factorizations, partitions ...; wall_time, s: of the
         run alone, without building the simulation, and without loading and compiling.
     fallbacks : where another outer loop took over (only with fallback=True).
-    redundant : constraint rows that others imply (`RedundantRow`): left out of the equations but checked. Multipliers
-        of these joints and of those they repeat are not unique; those of the rows left out are zero.
+    redundant : constraint rows that others imply (`RedundantRow`): left out of the equations but checked. These
+        joints and those that they repeat share their loads as equally compliant ones do.
     system : the Model or EquationSystem of the run; None if it is not known.
     settings : what the run was started with: method, rtol, atol, step ...
     """

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelError, SimulationError
+from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..methods.history import recall
 from ..stage.accelerations import solve_accelerations
@@ -109,23 +109,28 @@ def _same(a: NDArray[np.int64], b: NDArray[np.int64]) -> bool:
     return a is b or a.tobytes() == b.tobytes()
 
 
+def _no_state(sim: "Simulation") -> SimulationError:
+    return SimulationError(
+        f"at t = {sim.t:.9g} s no state meets the constraints and the equations of motion with the inputs set: "
+        "they ask for a position out of reach, or make a force that is not finite",
+        t=sim.t,
+        loop="inner",
+    )
+
+
 def go_to_present(sim: "Simulation") -> None:
     """Let the present time `sim.t` be that of the workspace's point. Raises SimulationError where no state is found."""
     ws, ms = sim.workspace.record, sim._method.record
     if sim.t == sim.t_internal:
         recall(ws, ms, 0)
     elif sim.query() != OK:
-        raise SimulationError(
-            f"at t = {sim.t:.9g} s no state meets the constraints and the equations of motion with the inputs set: "
-            "they ask for a position out of reach, or make a force that is not finite",
-            t=sim.t,
-            loop="inner",
-        )
+        raise _no_state(sim)
 
 
 def restart_here(sim: "Simulation", is_present: bool = False) -> None:
     """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed).
-    is_present : the workspace's point is that of the present time already."""
+    is_present : the workspace's point is that of the present time already.
+    Raises SimulationError where no accelerations fit it."""
     ws = sim.workspace.record
     if not is_present:
         go_to_present(sim)
@@ -139,7 +144,10 @@ def restart_here(sim: "Simulation", is_present: bool = False) -> None:
         sim.begin_rates()
         sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
     else:
-        sim.use_modes()
+        try:
+            sim.use_modes()
+        except ConsistencyError as error:
+            raise _no_state(sim) from error
     sim._new_history()
     sim.pending += [k for k in sim.unsettled() if k not in sim.pending]
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ..description import Model
 from ..errors import ModelError
 from ..laws.friction import CoulombFriction
 from ..methods.registry import Formula
@@ -11,9 +12,9 @@ from ..model.signals import InputSignal, Step
 def refuse_surface_jumps(system: Any, formula: Formula, method: str) -> None:
     """Raise ModelError for a surface with Coulomb friction whose speed may jump, if the method does not meet
     constraints of velocities: it would pull along what sticks, whatever friction can hold."""
-    if formula.exact:
+    if formula.exact or not isinstance(system, Model):
         return
-    for contact in getattr(system, "contacts", ()):
+    for contact in system.contacts:
         speed = contact.surface_speed
         if isinstance(speed, Step | InputSignal) and isinstance(contact.friction, CoulombFriction):
             raise ModelError(

@@ -22,19 +22,29 @@ MODELS = {
 }
 
 
-def definition(assembly, closed, engaged, sticking, dropped):
-    """Active rows; the places of the matrix and of the watched gradients with the local entries that belong there."""
+def definition(workspace, closed, engaged, sticking):
+    """Active rows; the places of the matrix and of the watched gradients with the local entries that belong there. Rows
+    of joints that are left out have multipliers, and in the place of their equation one of the multipliers of their
+    mechanism."""
+    assembly, dropped = workspace.assembly, workspace.dropped
     contacts = assembly.contacts
     count = len(contacts)
     constraints = {contacts[k].row for k in closed} | {contacts[k % count].slide_row + k // count for k in sticking}
-    out = dropped | {row for row, by in assembly.replaced_rows.items() if by & closed}
+    replaced = {row for row, by in assembly.replaced_rows.items() if by & closed}
+    out, implied = dropped | replaced, sorted(dropped - replaced)
     active = [r for r in range(assembly.m) if (r < assembly.m_joints and r not in out) or r in constraints]
     active.sort(key=lambda row: row in assembly.rate_rows)  # those with a position form come first
     # of contacts that can be evaluated alone, these are asked for gradients instead
     listed = [c for c, (batch, _, _) in zip(contacts, contacts_alone(assembly), strict=True) if batch is None]
     watched = {c.row for c in listed} | {c.slide_row + k for c in listed if c.slide_row >= 0 for k in range(c.tangents)}
-    watched -= set(active)
+    watched = watched - set(active) | set(implied)
     n, matrix, gradients = assembly.n, {(i, i): [] for i in range(assembly.n)}, {}
+    rows = [*active, *implied]
+    compliance, mechanism = workspace.arrays["compliance"], workspace.arrays["mechanism"]
+    for own in implied:
+        for row in (row for row in rows if row < assembly.m_joints and mechanism[row] == mechanism[own]):
+            if compliance[row] > 0.0 or row == own:
+                matrix[n + rows.index(own), n + rows.index(row)] = []
     for b, batch in enumerate(assembly.batches):
         width = batch.coord.shape[1]
         for e in range(len(batch.coord)):
@@ -50,7 +60,9 @@ def definition(assembly, closed, engaged, sticking, dropped):
                     at = n + active.index(row)
                     matrix.setdefault((at, here[j]), []).append((1, b, e, k * width + j))
                     matrix.setdefault((here[j], at), []).append((2, b, e, k * width + j))
-                elif row in watched:
+                if row in implied:
+                    matrix.setdefault((here[j], n + rows.index(row)), []).append((2, b, e, k * width + j))
+                if row in watched:
                     gradients.setdefault((row, here[j]), []).append((1, b, e, k * width + j))
     return active, matrix, gradients
 
@@ -68,7 +80,7 @@ def test_structures_are_what_they_are_defined_to_be(name):
         engaged = closed | set(np.flatnonzero(codes == 1).tolist())
         workspace.drop(frozenset(np.flatnonzero(rng.random(assembly.m_joints) < 0.1).tolist()))
         workspace.engage(closed, engaged, sticking)
-        active, matrix, gradients = definition(assembly, closed, engaged, sticking, workspace.dropped)
+        active, matrix, gradients = definition(workspace, closed, engaged, sticking)
         s, n = workspace.structure, assembly.n
         assert s.active.tolist() == active
         assert s.m_held == len([row for row in active if row not in assembly.rate_rows])

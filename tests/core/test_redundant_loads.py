@@ -21,6 +21,7 @@ from tlismni.core import (
     Marker3D,
     Model,
     NewtonImpact,
+    Prismatic3D,
     Revolute2D,
     Revolute3D,
     RevoluteFriction3D,
@@ -146,6 +147,26 @@ def test_mechanisms_that_only_the_ground_connects_do_not_share():
     both = simulate(one.model_copy(update={"bodies": (*one.bodies, light), "joints": (*one.joints, *hinges)}), 0.01)
     np.testing.assert_allclose(loads(both, ["h0", "h1"]), alone, atol=1e-9 * MASS * G)
     np.testing.assert_allclose(loads(both, ["l0", "l1"]), 0.1 * alone, atol=1e-9 * MASS * G)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_guides_of_a_carriage_carry_half_each(method):
+    """Among the rows left out is the norm of the Euler parameters, which carries nothing."""
+    frame = Axes(z=(1.0, 0.0, 0.0))
+    carriage = RigidBody3D(name="carriage", mass=2.0, inertia=(0.1, 0.1, 0.1), velocity=(1.0, 0.0, 0.0))
+    guides = [
+        Prismatic3D(name=f"g{k}", a=Marker3D(point=place, attitude=frame), b=carriage.marker_at(place, frame))
+        for k, place in enumerate(((0.0, 0.3, 0.0), (0.0, -0.3, 0.0)))
+    ]
+    result = simulate(Model(bodies=[carriage], joints=guides, gravity=(0.0, 0.0, -G)), 0.3, method)
+    assert any(found.of_body for found in result.redundant)
+    assert result["carriage.x"][-1] == pytest.approx(0.3, abs=1e-9)
+    first, second = loads(result, ["g0", "g1"])
+    # along the axes of the guide: its y and x are across
+    assert np.linalg.norm(first[:3] + second[:3]) == pytest.approx(2.0 * G, rel=1e-9)
+    np.testing.assert_allclose(first[:3], second[:3], atol=1e-9)
+    # equal forces at both sides leave no moment
+    np.testing.assert_allclose([first[3:], second[3:]], 0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("order", list(itertools.permutations(range(3)))[::2])

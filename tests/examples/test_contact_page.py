@@ -42,6 +42,10 @@ def test_the_page_on_load_sharing_runs() -> None:
     assert [result[f"foot{i}.normal_force"][-1] for i in range(4)] == pytest.approx([9.81 / 4] * 4, rel=1e-8)
     stops = 0.02 * 10.0 / (0.3 * 9.81 * 0.125)
     assert max(event.t for event in result.events if event.kind == "stick") == pytest.approx(stops, rel=1e-4)
+    hung, weight = names["hung"], 20.0 * 9.81
+    assert [hung[f"hinge{i}.force_z"][-1] for i in range(2)] == pytest.approx([0.5 * weight] * 2, rel=1e-9)
+    moments = sum(hung[f"hinge{i}.torque_y"][-1] + (-0.7, 0.7)[i] * hung[f"hinge{i}.force_x"][-1] for i in range(2))
+    assert abs(moments) == pytest.approx(0.4 * weight, rel=1e-9)
 
 
 def test_the_page_on_the_friction_of_joints_runs() -> None:

@@ -129,12 +129,13 @@ def three_cranks():
 
 @needs_exudyn
 def test_three_cranks_in_the_plane():
-    """The forces too are unique once the same equation is left out on both sides."""
+    """The joints share loads, of which exudyn has one less: what bars feel together is compared, not each joint."""
     model = three_cranks()
     assert sum(map(len, redundant_rows(model).values())) == 1
     agree(model, ("beam.x", "beam.y", "crank0.angle", "crank2.angle"), 0.2, 1e-3)
     ours, theirs = simulate(model, 0.2, "irk", 1e-9, 1e-11), run_exudyn(model, 0.2, 2e-4)
-    for channel in (f"{joint}{k}.force_{axis}" for joint in ("foot", "head") for k in range(3) for axis in "xy"):
+    assert not any(".force" in channel for channel in theirs.channels)
+    for channel in ("beam.ax", "beam.ay", "crank1.angular_acceleration"):
         assert theirs[channel][-1] == pytest.approx(ours[channel][-1], rel=1e-5), channel
 
 

@@ -22,7 +22,7 @@ from ...core.elements.spatial_body import start_of_marker
 from ...core.errors import TlismniError
 from ...core.simulation.simulation import Simulation
 from ..errors import NotTranslatable
-from .registry import can_free
+from .registry import Build, can_free
 
 log = logging.getLogger(__name__)
 
@@ -57,23 +57,45 @@ class Turn:
 HeldRow = Place | Along | Turn
 
 
+def _redundant_run(model: Model) -> Simulation | None:
+    """The model without its contacts where joints repeat each other: contacts say nothing of joints, and some have laws
+    that exudyn alone knows."""
+    if not model.joints:
+        return None
+    try:
+        sim = Simulation(model.model_copy(update={"contacts": (), "groups": ()}))
+    except TlismniError as error:
+        # our own run says what is wrong with the model; exudyn may be run without it
+        log.debug("redundant equations of '%s' are not known: %s", model.name, error)
+        return None
+    return sim if sim.redundant else None
+
+
+def drop_shared_loads(build: Build) -> None:
+    """Do not read the loads of joints that repeat each other from exudyn, which has less of them: there the rest of
+    them carries all, while equally compliant ones share."""
+    sim = _redundant_run(build.model) if build.redundant else None
+    if sim is None:
+        return
+    names = {found.constraint for found in sim.redundant}.union(*(found.repeats for found in sim.redundant))
+
+    def is_shared(channel: str) -> bool:
+        joint, _, quantity = channel.rpartition(".")
+        return joint in names and quantity.startswith(("force", "torque", "tension"))
+
+    build.columns = [column for column in build.columns if not is_shared(column.channel)]
+    build.derived = [derived for derived in build.derived if not is_shared(derived.channel)]
+    build.notes.append(f"{', '.join(sorted(names))}: these share loads; theirs are not read back from exudyn")
+
+
 def redundant_rows(model: Model) -> Mapping[str, frozenset[int]]:
     """Which equations of which joints, counted from 0 in each, exudyn must not get because others imply them.
 
     Those that our solver leaves out, as far as exudyn can: it keeps the norms of Euler parameters, and joints of some
     kinds whole. Others that say the same are left out in their place.
     """
-    if not model.joints:
-        return {}
-    # contacts say nothing of joints, and some have laws that exudyn alone knows
-    alone = model.model_copy(update={"contacts": (), "groups": ()})
-    try:
-        sim = Simulation(alone)
-    except TlismniError as error:
-        # our own run says what is wrong with the model; exudyn may be run without it
-        log.debug("redundant equations of '%s' are not known: %s", model.name, error)
-        return {}
-    if not sim.redundant:
+    sim = _redundant_run(model)
+    if sim is None:
         return {}
     names, records = sim.assembly.row_names, {joint.name: joint for joint in model.joints}
     ours = sim.workspace.dropped
