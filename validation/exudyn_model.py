@@ -7,7 +7,7 @@ from .errors import NotTranslatable
 from .exudyn_import import import_exudyn
 from .translation import Build, translate
 from .translation.laid_contacts import laid_contacts
-from .translation.redundant import drop_shared_loads, redundant_rows
+from .translation.redundant import drop_shared_loads, redundancy
 
 
 def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset[str] = frozenset()) -> Build:
@@ -29,9 +29,10 @@ def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset
     mbs = container.AddSystem()
     ground = mbs.AddObject(exudyn.items.ObjectGround())
     ground_node = mbs.AddNode(exudyn.items.NodePointGround())
+    repeated = redundancy(model)
     build = Build(
         exudyn, mbs, model, sensors, ground, ground_node, laid=laid_contacts(model), clamped=clamped,
-        redundant=redundant_rows(model),
+        redundant=repeated.rows, sharing=repeated.sharing,
     )  # fmt: skip
     for element in model.elements():
         translate(element, build)

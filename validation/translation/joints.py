@@ -53,10 +53,8 @@ def _pin_in_part(record: Revolute2D, build: Build, left_out: frozenset[int]) -> 
         b.push(gradient, -along[0], -along[1])
         return along[0] * (a.x - b.x) + along[1] * (a.y - b.y), gradient
 
-    for row, (along, channel) in enumerate(zip(((1.0, 0.0), (0.0, 1.0)), record.multiplier_channels(), strict=True)):
-        if row in left_out:  # no force there, as with us
-            build.derived.append(Derived(channel.name, lambda found: np.zeros(len(next(iter(found.values()))))))
-        else:
+    for row, along in enumerate(((1.0, 0.0), (0.0, 1.0))):
+        if row not in left_out:
             add_equation(record, build, nodes, partial(apart, along=along), row=row)
     build.notes.append(f"{record.name}: exudyn's holds {2 - len(left_out)} ways, without the redundant equations")
 

@@ -57,46 +57,60 @@ class Turn:
 HeldRow = Place | Along | Turn
 
 
-def _redundant_run(model: Model) -> Simulation | None:
-    """The model without its contacts where joints repeat each other: contacts say nothing of joints, and some have laws
-    that exudyn alone knows."""
-    if not model.joints:
-        return None
-    try:
-        sim = Simulation(model.model_copy(update={"contacts": (), "groups": ()}))
-    except TlismniError as error:
-        # our own run says what is wrong with the model; exudyn may be run without it
-        log.debug("redundant equations of '%s' are not known: %s", model.name, error)
-        return None
-    return sim if sim.redundant else None
+@dataclass(frozen=True)
+class Redundancy:
+    """Joints of a model that repeat each other.
+
+    Attributes
+    ----------
+    rows : which equations of which joints, counted from 0 in each, exudyn must not get because others imply them.
+    sharing : names of the joints that share their loads.
+    """
+
+    rows: Mapping[str, frozenset[int]]
+    sharing: frozenset[str]
 
 
 def drop_shared_loads(build: Build) -> None:
     """Do not read the loads of joints that repeat each other from exudyn, which has less of them: there the rest of
     them carries all, while equally compliant ones share."""
-    sim = _redundant_run(build.model) if build.redundant else None
-    if sim is None:
+    if not build.sharing:
         return
-    names = {found.constraint for found in sim.redundant}.union(*(found.repeats for found in sim.redundant))
 
     def is_shared(channel: str) -> bool:
         joint, _, quantity = channel.rpartition(".")
-        return joint in names and quantity.startswith(("force", "torque", "tension"))
+        return joint in build.sharing and quantity.startswith(("force", "torque", "tension"))
 
     build.columns = [column for column in build.columns if not is_shared(column.channel)]
     build.derived = [derived for derived in build.derived if not is_shared(derived.channel)]
-    build.notes.append(f"{', '.join(sorted(names))}: these share loads; theirs are not read back from exudyn")
+    build.notes.append(f"{', '.join(sorted(build.sharing))}: these share loads; theirs are not read back from exudyn")
 
 
 def redundant_rows(model: Model) -> Mapping[str, frozenset[int]]:
-    """Which equations of which joints, counted from 0 in each, exudyn must not get because others imply them.
+    """The `rows` of `redundancy`."""
+    return redundancy(model).rows
 
-    Those that our solver leaves out, as far as exudyn can: it keeps the norms of Euler parameters, and joints of some
-    kinds whole. Others that say the same are left out in their place.
+
+def redundancy(model: Model) -> Redundancy:
+    """What exudyn must not get, and whose loads differ from ours because of it.
+
+    The rows are those that our solver leaves out, as far as exudyn can: it keeps the norms of Euler parameters, and
+    joints of some kinds whole. Others that say the same are left out in their place.
     """
-    sim = _redundant_run(model)
-    if sim is None:
-        return {}
+    none = Redundancy({}, frozenset())
+    if not model.joints:
+        return none
+    # contacts say nothing of joints, and some have laws that exudyn alone knows
+    alone = model.model_copy(update={"contacts": (), "groups": ()})
+    try:
+        sim = Simulation(alone)
+    except TlismniError as error:
+        # our own run says what is wrong with the model; exudyn may be run without it
+        log.debug("redundant equations of '%s' are not known: %s", model.name, error)
+        return none
+    if not sim.redundant:
+        return none
+    said = {found.constraint for found in sim.redundant}.union(*(found.repeats for found in sim.redundant))
     names, records = sim.assembly.row_names, {joint.name: joint for joint in model.joints}
     ours = sim.workspace.dropped
     sim.workspace.drop(frozenset())
@@ -119,7 +133,8 @@ def redundant_rows(model: Model) -> Mapping[str, frozenset[int]]:
     for k in _dependent(matrix[joints], preferences):
         row = int(active[joints[k]])
         found[names[row]] = found.get(names[row], frozenset()) | {row - names.index(names[row])}
-    return found
+    # bodies are among them, by the norms of their Euler parameters
+    return Redundancy(found, frozenset(said & records.keys()))
 
 
 def _dependent(matrix: np.ndarray, preferences: np.ndarray) -> list[int]:

@@ -190,6 +190,8 @@ class Build:
     """Contacts whose force exudyn's own objects would let pull where the law does not: user functions."""
     redundant: Mapping[str, frozenset[int]] = field(default_factory=dict)
     """Equations of joints, counted from 0 in each, that others imply and exudyn must not get."""
+    sharing: frozenset[str] = frozenset()
+    """Joints that repeat each other, and share their loads."""
     before_step: list[Callable[[Any, float], None]] = field(default_factory=list)
     """Called at the start of each step with (mbs, t)."""
     notes: list[str] = field(default_factory=list)
