@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from test_tangents import Point, check_levels, check_matrix, differences, draw, quick
+from random_seeds import assume, at_seeds
+from test_tangents import Point, check_levels, check_matrix, differences, draw
 from test_tangents3d import GROUND, LEFT, MASS, RIGHT, A, B, P
 from tlismni.core import (
     BrownMcPheeFriction,
@@ -118,8 +117,7 @@ def is_smooth(point, state):
 def test_tangent_is_the_derivative_of_the_residual(case):
     point = system(case)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         point.at(*state)
@@ -135,8 +133,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
 def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_level(case):
     point = system(case)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         check_levels(point, draw(point, seed), 4e-3)
 
@@ -197,8 +194,7 @@ def test_tangent_of_coulomb_friction(shape, where, slides, turning):
     point = gripping(shape, where, SLIDES[slides], turning)
     n, active = point.n, point.workspace.structure.active
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         assume(SLIDES[slides] != 1.0 or forward(point, state))
@@ -222,8 +218,7 @@ def test_rates_of_the_tangents_rows_fit_their_velocities(shape, slides, turning)
     point = gripping(shape, "two bodies", SLIDES[slides], turning)
     rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         _, q, v, a, lam = state

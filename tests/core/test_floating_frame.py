@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 from helpers import GROUND, on
-from hypothesis import given
-from hypothesis import strategies as st
-from test_tangents import Point, check_levels, check_matrix, draw, quick
+from random_seeds import at_seeds
+from test_tangents import Point, check_levels, check_matrix, draw
 from tlismni.core import (
     AppliedForce2D,
     Attachment,
@@ -90,8 +89,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
     bodies = [PointMass2D(name="before", mass=1.0), *bodies, RigidBody2D(name="after", mass=1.0, inertia=1.0)]
     point = Point(Model(gravity=(0.3, -9.0), bodies=bodies, **parts))
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         check_matrix(point, draw(point, seed))
         check_levels(point, draw(point, seed))

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
+from random_seeds import assume, at_seeds
 from test_cable_tangents3d import CLOSE, POINTS, plane, states
 from test_cable_tangents3d import differences as cable_differences
 from test_contact_tangents3d import HUNT, KELVIN, PLACES, TURNS, on_plane, on_sphere
@@ -98,8 +99,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
     point = point_of(case)
     n = point.n
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = some_state(point, case, seed)
         point.at(*state)

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from random_seeds import assume, at_seeds
 from test_contact_tangents3d import HUNT, PEAK, SLIDES, forward, is_smooth
-from test_tangents import Point, check_levels, check_matrix, differences, draw, quick
+from test_tangents import Point, check_levels, check_matrix, differences, draw
 from test_tangents3d import GROUND, LEFT, RIGHT, RIGHT_WHEEL, A, B, P
 from tlismni.core import (
     Axes,
@@ -93,8 +92,7 @@ def system(contact):
 def test_levels_and_tangent_without_friction(name):
     point = Point(system(SHAPES[name](law=HARD)), CLOSED)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         assume(is_smooth(point, state))
@@ -109,8 +107,7 @@ def test_tangent_of_regularised_friction(name):
     point = Point(system(SHAPES[name](law=HUNT, friction=PEAK)), ACTIVE)
     n = point.n
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         point.at(*state)
@@ -141,8 +138,7 @@ def test_tangent_and_rates_of_coulomb_friction(name, slides):
     n, active = point.n, point.workspace.structure.active
     rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         assume(SLIDES[slides] != 1.0 or forward(point, state))

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from test_tangents import Point, check_levels, check_matrix, draw, quick
+from random_seeds import at_seeds
+from test_tangents import Point, check_levels, check_matrix, draw
 from test_tangents3d import LEFT, RIGHT, A, B, P
 from tlismni.core import (
     AngleStop2D,
@@ -51,8 +50,7 @@ def test_tangents_and_levels(case):
         Model(gravity=(0.3, -0.4, -9.0), bodies=[A, P, B], contacts=[contact]), CLOSED if law is HARD else ACTIVE
     )
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         state = draw(point, seed)
         check_matrix(point, state, h=2e-3)

@@ -4,10 +4,9 @@ Euler parameters are moved off their norm too: the equations hold as functions o
 """
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from random_seeds import at_seeds
 from reduced_bodies import points_with_modes
-from test_tangents import SINE, H, Point, check_levels, check_matrix, draw, quick
+from test_tangents import SINE, H, Point, check_levels, check_matrix, draw
 from tlismni.core import (
     AngleDriver3D,
     AppliedForce3D,
@@ -206,8 +205,7 @@ def system(case):
 def test_tangent_is_the_derivative_of_the_residual(case):
     point = system(case)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         check_matrix(point, draw(point, seed), h=SPAN.get(case, H))
 
@@ -218,8 +216,7 @@ def test_tangent_is_the_derivative_of_the_residual(case):
 def test_velocity_and_acceleration_level_are_the_derivatives_of_the_position_level(case):
     point = system(case)
 
-    @quick
-    @given(st.integers(0, 10**6))
+    @at_seeds
     def check(seed):
         check_levels(point, draw(point, seed), 4e-3)
 
