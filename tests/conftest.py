@@ -2,6 +2,7 @@
 change is looked at, nobody knows, but when it must end."""
 
 import faulthandler
+import gc
 import json
 import math
 import time
@@ -11,14 +12,11 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from shared_work import DURATIONS, LISTED, SharedWork, durations, function_of, seconds_of, shares
 
 settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("no clock")
 
-DURATIONS = Path(__file__).with_name("durations.json")
-"""Mean seconds of the tests of a function, of those above LISTED; written by `pytest --store-durations`. Of functions
-that have not been stored, their folder's, if it is there: a guess."""
-LISTED = 0.1
 LEAST_SHARE = 0.25
 """Of the tests that must have run: with fewer the session fails."""
 LONGEST = 900.0
@@ -49,29 +47,26 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(Watch(config))
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharedWork | None:
+    return SharedWork(config, log) if config.getoption("dist") == "load" else None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """By powers of two of seconds. Tests of a file that share what is made once for it stay together, where the longest
-    of them is: else each worker makes it anew for each power."""
-    known = json.loads(DURATIONS.read_text())
-
-    def level(item: pytest.Item) -> int:
-        function = _function(item.nodeid)
-        seconds = known.get(function, known.get("/".join(function.split("/")[:2]), LISTED))
-        return max(math.ceil(math.log2(seconds / LISTED)), 0)
-
+    of them is."""
+    level = {item: math.ceil(math.log2(seconds_of(item.nodeid) / LISTED)) for item in items}
     together: dict[Path, int] = defaultdict(int)
-    sharing = {item for item in items if _shares(item)}
-    for item in sharing:
-        together[item.path] = max(together[item.path], level(item))
-    items.sort(key=lambda item: together[item.path] if item in sharing else level(item))
+    for item in items:
+        if shares(item.path):
+            together[item.path] = max(together[item.path], level[item])
+    items.sort(key=lambda item: together.get(item.path, level[item]))
 
 
-def _shares(item: pytest.Item) -> bool:
-    """Whether a test uses a fixture that its own file makes once for all tests."""
-    if not isinstance(item, pytest.Function):
-        return False
-    used = item._fixtureinfo.name2fixturedefs.values()
-    return any(d.scope == "module" and d.baseid == item.nodeid.partition("::")[0] for found in used for d in found)
+def pytest_collection_finish() -> None:
+    """What the modules of ten thousand tests hold stays: it is not looked through again and again for what does not."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -88,10 +83,6 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     output = getattr(session.config, "workeroutput", None)
     if output is not None:
         output["left out"] = session.config.stash[LEFT_OUT]
-
-
-def _function(nodeid: str) -> str:
-    return nodeid.partition("[")[0]
 
 
 class Watch:
@@ -129,8 +120,8 @@ class Watch:
         """What was run takes the place of what is known; other functions stay as they are."""
         ran: dict[str, list[float]] = defaultdict(list)
         for nodeid, seconds in self._seconds.items():
-            ran[_function(nodeid)].append(seconds)
-        known = {name: seconds for name, seconds in json.loads(DURATIONS.read_text()).items() if name not in ran}
+            ran[function_of(nodeid)].append(seconds)
+        known = {name: seconds for name, seconds in durations().items() if name not in ran}
         known |= {name: round(sum(each) / len(each), 1) for name, each in ran.items()}
         listed = {name: known[name] for name in sorted(known) if known[name] > LISTED}
         DURATIONS.write_text(json.dumps(listed, indent=0) + "\n")

@@ -1,15 +1,33 @@
 """Slaves and FMUs on the fake simulation."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import lark
 import pytest
 import tlismni.core
 from fake_simulation import FakeSimulation
 from fmu_helpers import Messages, ball_model
 from tlismni.core.description import Model
 from tlismni.fmu_wrapper import Slave, export_fmu
+
+
+@pytest.fixture(scope="session", autouse=True)
+def names_parsed_once() -> Iterator[None]:
+    """fmpy parses the name of each variable of each FMU that it reads, by a grammar, in milliseconds; what the grammar
+    has accepted is not parsed again. Of the trees fmpy makes no use."""
+    accepted: set[tuple[str, str]] = set()
+    parse = lark.Lark.parse
+
+    def once(parser: lark.Lark, text: str) -> None:
+        if (parser.source_grammar, text) not in accepted:
+            parse(parser, text)
+            accepted.add((parser.source_grammar, text))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lark.Lark, "parse", once)
+        yield
 
 
 @pytest.fixture
