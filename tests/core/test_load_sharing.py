@@ -158,9 +158,23 @@ def pushed_block(feet, static, way):
     return Model(bodies=[body], forces=[push], contacts=contacts, gravity=(0, 0, -G))
 
 
-@pytest.mark.parametrize("way", [(1.0, 0.0), (0.6, 0.8)])
-@pytest.mark.parametrize("static", [0.3, 0.45])
-@pytest.mark.parametrize("feet", FEET)
+ALONG, ASKEW = (1.0, 0.0), (0.6, 0.8)
+
+
+# pushed askew, feet come to their limits one after another, in seconds: as they are, and with static friction of four
+@pytest.mark.parametrize(
+    ("feet", "static", "way"),
+    [
+        pytest.param(
+            feet,
+            static,
+            way,
+            marks=[pytest.mark.full] if static == 0.45 and way == ASKEW and feet != "four" else [],
+            id=f"{feet} feet, {static}, {'along' if way == ALONG else 'askew'}",
+        )
+        for feet, static, way in itertools.product(FEET, (0.3, 0.45), (ALONG, ASKEW))
+    ],
+)
 def test_block_breaks_away_at_the_static_friction_of_its_whole_load(feet, static, way):
     result = simulate(pushed_block(feet, static, way), 1.0, rtol=1e-9)
     starts = 0.1 + static * 3.0 * G / 20.0

@@ -154,7 +154,7 @@ from tlismni.core import (
     simulate,
 )
 
-quick = settings(deadline=None, max_examples=40, derandomize=True)
+quick = settings(deadline=None, max_examples=12, derandomize=True)
 
 number = st.floats(-1e6, 1e6)
 positive = st.floats(1e-6, 1e6)

@@ -22,16 +22,24 @@ FLUCTUATING = ("woodpecker",)
 LONG = (
     "newtons_cradle",
     "mass_on_rod",
+    "rod_rod",
     "arm_stop",
     "bricard",
+    "stick_slip",
+    "rocking_block",
+    "dropped_box",
+    "spinning_sphere",
+    "spatial_cradle",
+    "spatial_slider_crank",
+    "spatial_slider_crank_stop",
     "double_pendulum_wall",
     "impact_oscillator",
     "hub_beam_stop",
     "flexible_slider_crank_stop",
 )
-"""Scenarios whose coarse comparison takes five to fifteen seconds: two of them, others whenever the core changes; the
-rest with `-m full`."""
-SOME_LONG = random.Random(core_digest()).sample(LONG, 2)
+"""Scenarios whose coarse comparison takes four to fifteen seconds: three of them, others whenever the core changes; the
+rest with `-m full`. What they are made of is compared in small in the tests of the translation."""
+SOME_LONG = random.Random(core_digest()).sample(LONG, 3)
 
 
 def marked(case: Case) -> Any:
