@@ -36,8 +36,9 @@ demo: $(VENV)/.installed-all
 
 # the solver's machine code is made once, before the first tests: they take half the time with it. Where the core's sources
 # have changed since, it is left alone, and the tests compile what they use; `make library` makes it anew.
+# A hundred tests start processes: what one compiles to bytecode, the next ones read.
 test: $(VENV)/.installed-dev | $(VENV)/.library
-	$(BIN)/python -m pytest
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest
 
 $(VENV)/.library: | $(VENV)/.installed-dev
 	$(MAKE) library

@@ -98,7 +98,7 @@ def test_ledger_of_own_equations_is_that_of_the_model(kind):
             np.eye(1), np.array([-G]), q0=[height], v0=[0.0], potential=lambda t, q: G * q[0],
             contacts=[GapContact("floor", lambda t, q: q[0], law)],
         )  # fmt: skip
-        grid = np.linspace(0.0, 0.13, 201)
+        grid = np.linspace(0.0, 0.13, 61)
         results = [
             simulate(system, 0.13, rtol=1e-8, atol=1e-11, t_eval=grid) for system in (own, ball_over_floor(law, height))
         ]

@@ -103,7 +103,7 @@ def near_position(loops, rtol=1e-7):
     return sim
 
 
-@pytest.mark.parametrize("loops", [42, 60])
+@pytest.mark.parametrize("loops", [42, pytest.param(60, marks=pytest.mark.full)])
 def test_both_ways_agree_on_a_mechanism(loops, monkeypatch):
     sim = near_position(loops)
     assert sim.assembly.m_joints > singular_values.DENSE_ROWS
