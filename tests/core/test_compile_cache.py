@@ -279,5 +279,7 @@ def test_a_function_that_cannot_be_compiled_leaves_nothing_behind(folder, tmp_pa
     with pytest.raises(Exception, match="No implementation"):
         module.wrong(3)
     assert not kept._in_progress._stack
-    assert not ProcessLock(folder / "compiling.lock", patience=5.0).acquire()
+    lock = ProcessLock(folder / "compiling.lock", patience=5.0)
+    assert not lock.acquire()
+    lock.release()
     assert compiled_by(lambda: fresh().shifted(3)) == 1
