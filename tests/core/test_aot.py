@@ -23,8 +23,8 @@ from tlismni.core.source_digests import c_digest, core_digest
 
 PART = ("tsuji_formula", "position_level", "eliminate", "directions", "violates_redundant")
 """Functions that take seconds to make a library of: numbers, a record, arrays; of both parts that are recorded."""
-CALLER, CALLED = ("linalg.solve.factor", "stage.joints.factor_joints"), "linalg5solve6factor"
-"""Two functions, each of another part, one of which calls the other, as that is in LLVM's names."""
+CALLER, CALLED = ("linalg.analyze.analyze", "stage.joints.factor_joints"), "linalg5solve6factor"
+"""Two functions, each of another part, and what both call, as it is in LLVM's names."""
 
 
 def run(code: str, library: str | Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -1,5 +1,7 @@
 """Tangents and levels of contacts in space against differences of their residuals, friction included."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from random_seeds import assume, at_seeds
@@ -183,11 +185,18 @@ def forward(point, state):
     return x > 0.3 * arrays["phid"][first + 1]
 
 
-@pytest.mark.parametrize("shape", [on_plane, on_sphere, on_belt, on_tracks])
-@pytest.mark.parametrize(
-    ("where", "turning"),
-    [*((where, None) for where in PLACES), *((where, turns) for where in TURNABLE for turns in (TURNS, PATCH))],
-)
+ENDS = [*((where, None) for where in PLACES), *((where, turns) for where in TURNABLE for turns in (TURNS, PATCH))]
+
+
+def grips():
+    """Shapes at rest with all ends; those whose surface moves, which are the same contacts, between two bodies, and the
+    rest of them with `-m full`."""
+    for shape, (where, turning) in product((on_plane, on_sphere, on_belt, on_tracks), ENDS):
+        moves = shape in (on_belt, on_tracks)
+        yield pytest.param(shape, where, turning, marks=[pytest.mark.full] if moves and where != "two bodies" else [])
+
+
+@pytest.mark.parametrize(("shape", "where", "turning"), list(grips()))
 @pytest.mark.parametrize("slides", SLIDES)
 def test_tangent_of_coulomb_friction(shape, where, slides, turning):
     """Rows of sticking at velocity level: their W is the derivative of phid by v."""

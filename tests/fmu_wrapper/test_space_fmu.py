@@ -36,8 +36,10 @@ STRIKING = [name for name in SPATIAL if load(name).model.contacts]
 STEPS = 12
 LONG = ("arm_stop", "spatial_slider_crank", "spatial_slider_crank_stop")
 """Scenarios with so many parameters that an export without Python takes long: one of them, another whenever the core
-changes; all with `-m full`."""
-ONE_LONG = random.Random(core_digest()).choice(LONG)
+changes; all with `-m full`. Of the others, too, a half."""
+CHANCE = random.Random(core_digest())
+SHORT = [name for name in SPATIAL if name not in LONG]
+SAMPLE = [CHANCE.choice(LONG), *CHANCE.sample(SHORT, (len(SHORT) + 1) // 2)]
 
 
 def opened(path, folder, version, **how):
@@ -53,9 +55,7 @@ def outputs(side):
     return {by_reference[k]: value for k, value in zip(side.reals, found, strict=True)}
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.full] if n in LONG and n != ONE_LONG else []) for n in SPATIAL]
-)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in SAMPLE else [pytest.mark.full]) for n in SPATIAL])
 def test_the_bits_of_a_run_in_this_process(name, tmp_path):
     scenario, version = load(name), "2.0" if len(name) % 2 else "3.0"
     end = scenario.t_end
