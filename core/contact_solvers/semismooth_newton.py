@@ -30,7 +30,7 @@ QUICK, DROP_QUICK, DROP, GROW = 0.3, 0.03, 0.3, 30.0
 TINY = np.finfo(np.float64).tiny
 
 
-class _Equations(NamedTuple):
+class Equations(NamedTuple):
     """What is left of the equations of Alart and Curnier, x (n, p), |x_t| (n,), which contacts press and slip, u."""
 
     left: Vector
@@ -47,17 +47,17 @@ def newton(
     """Forces from a start: the best ones by the residual of the natural map, that residual, and the steps done."""
     best, forces, steps = start, start, 0
     least = natural = problem.residual(start)
-    at = _equations(problem, start)
+    at = equations(problem, start)
     value = norm = float(np.linalg.norm(at.left))
     eps, waited, lowest, taken = min(FIRST, least), 0, norm, start
     while natural > tolerance and steps < most and in_time():
-        change = _step(problem, forces, at, eps)
+        change = newton_step(problem, forces, at, eps)
         steps += 1
         if change is None:
             value = np.inf
         else:
             forces = forces + change
-            at = _equations(problem, forces)
+            at = equations(problem, forces)
             value = float(np.linalg.norm(at.left))
         if value < lowest:
             eps = max(eps * (DROP_QUICK if value < QUICK * lowest else DROP), LEAST)
@@ -70,13 +70,13 @@ def newton(
             if waited < PATIENCE and np.isfinite(value):
                 continue
             forces, waited, eps = taken, 0, eps * GROW
-            at = _equations(problem, forces)
+            at = equations(problem, forces)
             if eps > MOST:
                 break
     return best, least, steps
 
 
-def _equations(problem: FrictionProblem, r: Vector) -> _Equations:
+def equations(problem: FrictionProblem, r: Vector) -> Equations:
     u = problem.velocities(r)
     x = problem.blocks(r - u)
     pressing = np.maximum(x[:, 0], 0.0)
@@ -85,10 +85,10 @@ def _equations(problem: FrictionProblem, r: Vector) -> _Equations:
     left = problem.blocks(r).copy()
     left[:, 0] -= pressing
     left[:, 1:] -= np.where(slips, limit / np.maximum(length, TINY), 1.0)[:, None] * x[:, 1:]
-    return _Equations(left.ravel(), x, length, x[:, 0] > 0.0, slips, u)
+    return Equations(left.ravel(), x, length, x[:, 0] > 0.0, slips, u)
 
 
-def _step(problem: FrictionProblem, r: Vector, at: _Equations, eps: float) -> Vector | None:
+def newton_step(problem: FrictionProblem, r: Vector, at: Equations, eps: float) -> Vector | None:
     """Change of the forces; None where its equations are singular."""
     rows = 1 + problem.tangents
     change = np.where(np.repeat(at.presses, rows), 0.0, -r)

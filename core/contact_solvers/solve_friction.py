@@ -3,6 +3,7 @@
 import logging
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +12,17 @@ import numpy.typing as npt
 
 from ..errors import ConvergenceError
 from .friction_problem import FrictionProblem, Vector, lengths, scaled_problem
-from .semismooth_newton import MOST_STEPS, newton
+from .proximal_point import MOST_STEPS as PROXIMAL_STEPS
+from .proximal_point import less_friction, proximal_point
+from .semismooth_newton import MOST_STEPS as NEWTON_STEPS
+from .semismooth_newton import newton
 from .splitting import Splitting
 
 logger = logging.getLogger(__name__)
 
-GOAL, NEARER = 1e-3, 0.03
-"""Residual of the first-order method before Newton's method is first tried, and factor from one attempt to the next."""
+GOAL, NEARER, FIRST_ITERATIONS = 1e-3, 0.03, 500
+"""Residual to which the first-order method goes before Newton's method is tried, and factor from one attempt to the
+next; iterations at most before the first attempt."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +58,7 @@ def solve_friction(
     start: Any = None,
     tolerance: float = 1e-12,
     first_order_iterations: int = 5000,
-    newton_iterations: int = 400,
+    newton_iterations: int = 1000,
     seconds: float = math.inf,
     asymmetry: float = 0.01,
     must_converge: bool = False,
@@ -67,28 +72,57 @@ def solve_friction(
 
     best = _start(problem, start)
     least = problem.residual(best)
+    first, steps = 0, 0
+    if least > tolerance:
+        best, least, first, steps = _attempts(
+            problem, best, least, tolerance, first_order_iterations, newton_iterations, in_time
+        )
+    return _solution(problem, best, least, tolerance, first, steps, must_converge)
+
+
+def _attempts(
+    problem: FrictionProblem,
+    start: Vector,
+    residual: float,
+    tolerance: float,
+    most_first: int,
+    most_steps: int,
+    in_time: Callable[[], bool],
+) -> tuple[Vector, float, int, int]:
+    """The best forces, their residual, the first-order iterations and the Newton steps."""
+    best, least, steps = start, residual, 0
     splitting: Splitting | None = None
-    goal, steps = GOAL, 0
-    while least > tolerance and steps < newton_iterations and in_time():
-        if splitting is None and least > GOAL:
-            splitting = Splitting(problem, best)
-        if splitting is not None:
-            left = splitting.run(goal, first_order_iterations - splitting.iterations, in_time)
-            if left < least:
-                least, best = left, splitting.forces
-            found, left, done = newton(
-                problem, splitting.forces, tolerance, min(MOST_STEPS, newton_iterations - steps), in_time
-            )
-        else:
-            found, left, done = newton(problem, best, tolerance, min(MOST_STEPS, newton_iterations - steps), in_time)
-            splitting = Splitting(problem, best) if left > tolerance else None
-        steps += done
+
+    def better(found: Vector, left: float, done: int = 0) -> bool:
+        nonlocal best, least, steps
         if left < least:
-            least, best = left, found
-        if splitting is not None and splitting.iterations >= first_order_iterations:
+            best, least = found, left
+        steps += done
+        return least <= tolerance or steps >= most_steps or not in_time()
+
+    goal, most, once_more = GOAL, FIRST_ITERATIONS, True
+    while True:
+        near = start
+        if least > goal or not once_more:
+            splitting = splitting or Splitting(problem, start)
+            left = splitting.run(goal, min(most, most_first - splitting.iterations), in_time)
+            near = splitting.forces
+            if better(near, left):
+                break
+        if better(*newton(problem, near, tolerance, min(NEWTON_STEPS, most_steps - steps), in_time)):
             break
-        goal *= NEARER
-    return _solution(problem, best, least, tolerance, splitting.iterations if splitting else 0, steps, must_converge)
+        if better(*proximal_point(problem, near, tolerance, min(PROXIMAL_STEPS, most_steps - steps), in_time)):
+            break
+        if once_more and problem.mu.any():
+            near, done = less_friction(problem, near, most_steps - steps, in_time)
+            if better(near, problem.residual(near), done) or better(
+                *proximal_point(problem, near, tolerance, min(PROXIMAL_STEPS, most_steps - steps), in_time)
+            ):
+                break
+        if splitting is not None and splitting.iterations >= most_first:
+            break
+        once_more, goal, most = False, NEARER * goal, most_first
+    return best, least, splitting.iterations if splitting else 0, steps
 
 
 def _start(problem: FrictionProblem, start: Any) -> Vector:

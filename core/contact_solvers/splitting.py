@@ -13,7 +13,7 @@ import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse.linalg import splu
 
-from .friction_problem import FrictionProblem, Vector
+from .friction_problem import FrictionProblem, Vector, lengths
 
 RELAXATION = 1.6
 EVERY = 10
@@ -49,7 +49,7 @@ class Splitting:
         while left > goal and done < most and in_time():
             for _ in range(EVERY):
                 before = self.forces
-                problem.blocks(shift)[:, 0] = mu * self.rho * _sliding(problem, self._dual)
+                problem.blocks(shift)[:, 0] = mu * self.rho * lengths(problem.blocks(self._dual)[:, 1:])
                 free = self._solve(self.rho * (before - self._dual) - problem.q - shift)
                 mixed = RELAXATION * free + (1.0 - RELAXATION) * before
                 self.forces = problem.projected(mixed + self._dual)
@@ -73,12 +73,6 @@ class Splitting:
         self.rho *= factor
         self._dual = self._dual / factor
         self._solve = _factorised(self.problem, self.rho)
-
-
-def _sliding(problem: FrictionProblem, dual: Vector) -> Vector:
-    from .friction_problem import lengths
-
-    return lengths(problem.blocks(dual)[:, 1:])
 
 
 def _factorised(problem: FrictionProblem, rho: float) -> Callable[[Vector], Vector]:
