@@ -42,7 +42,7 @@ def proximal_point(
     centre = best = start
     least, steps, eps = problem.residual(start), 0, first
     size = float(np.linalg.norm(problem.q))
-    while least > tolerance and steps < most and in_time():
+    while least > tolerance and steps < min(most, MOST_STEPS) and in_time():
         goal = size * min(ROUGHEST, PART * least)
         found, solved, done = _subproblem(_softened(problem, eps, centre), centre, goal)
         steps += done

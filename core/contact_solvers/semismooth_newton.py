@@ -50,7 +50,7 @@ def newton(
     at = equations(problem, start)
     value = norm = float(np.linalg.norm(at.left))
     eps, waited, lowest, taken = min(FIRST, least), 0, norm, start
-    while natural > tolerance and steps < most and in_time():
+    while natural > tolerance and steps < min(most, MOST_STEPS) and in_time():
         change = newton_step(problem, forces, at, eps)
         steps += 1
         if change is None:

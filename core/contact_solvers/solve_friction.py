@@ -12,17 +12,17 @@ import numpy.typing as npt
 
 from ..errors import ConvergenceError
 from .friction_problem import FrictionProblem, Vector, lengths, scaled_problem
-from .proximal_point import MOST_STEPS as PROXIMAL_STEPS
 from .proximal_point import less_friction, proximal_point
-from .semismooth_newton import MOST_STEPS as NEWTON_STEPS
 from .semismooth_newton import newton
 from .splitting import Splitting
 
 logger = logging.getLogger(__name__)
 
 GOAL, NEARER, FIRST_ITERATIONS = 1e-3, 0.03, 500
-"""Residual to which the first-order method goes before Newton's method is tried, and factor from one attempt to the
-next; iterations at most before the first attempt."""
+"""Residual to which the first-order method goes before the others are tried, factor from one such attempt to the next,
+and iterations at most before the first."""
+SLIDES, SURELY = 1e-12, 10.0
+"""Sliding speed, in parts of |q|, above which a contact slips; and factor of the residual, which is more where that is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +31,13 @@ class FrictionSolution:
 
     Attributes
     ----------
-    forces : (n p,), each contact's normal force and p - 1 tangential ones, N or N s.
-    velocities : u = W r + q, (n p,), m/s or, of accelerations, m/s^2.
-    modes : "open" (no force), "stick" or "slip" for each contact, (n,). A contact without friction that presses slips.
+    forces : r, (n p,), normal and p - 1 tangential forces of each contact, N (or impulses, N s).
+    velocities : u = W r + q, (n p,), m/s (or accelerations, m/s^2).
+    modes : "open" (without force), "stick" or "slip" for each contact, (n,). One that presses without friction slips.
     residual : of the natural map, in parts of |q|, dimensionless.
     converged : whether the residual is at most the tolerance.
     first_order_iterations : of the alternating directions, dimensionless.
-    newton_iterations : steps of the semismooth Newton method, dimensionless.
+    newton_iterations : steps of Newton's method, each with a factorisation, dimensionless.
     """
 
     forces: Vector
@@ -50,7 +50,7 @@ class FrictionSolution:
 
 
 def solve_friction(
-    W: Any,
+    W: Any,  # noqa: N803
     q: Any,
     mu: Any,
     *,
@@ -63,69 +63,124 @@ def solve_friction(
     asymmetry: float = 0.01,
     must_converge: bool = False,
 ) -> FrictionSolution:
-    """Forces r and velocities u = W r + q of contacts with Coulomb friction."""
+    """Forces r and velocities u = W r + q of n contacts with Coulomb friction.
+
+    Each contact is open (r = 0, u_n >= 0), sticks (u = 0, |r_t| <= mu r_n) or slips (u_n = 0, r_t = -mu r_n u_t/|u_t|).
+    In the form of de Saxce and Feng (1998): K* contains u + mu |u_t| e_n, perpendicular to r in the friction cone K.
+    The velocities may be accelerations, or those after an impact; the forces then are impulses.
+
+    Where contacts repeat each other W is singular, and the problem leaves open how they share a load: one solution is
+    given. Contacts that slip in different directions are braked by what each carries, so that their velocities differ
+    with it too. If friction is large a problem may also have several solutions with other modes, or none.
+
+    Parameters
+    ----------
+    W : Delassus matrix J M^-1 J^T, (n p, n p), symmetric and positive semidefinite, an array or a sparse matrix; in
+        blocks of p = 1 + tangents rows a contact, in the order normal, tangents. 1/kg.
+    q : velocities without contact forces, (n p,), m/s.
+    mu : coefficients of friction, (n,) or one for all, dimensionless.
+    tangents : of each contact: 2 in space, 1 in the plane, 0 without friction (mu is then of no account).
+    start : forces to start from, (n p,), of a problem nearby; N s.
+    tolerance : of the residual, dimensionless.
+    first_order_iterations, newton_iterations : at most so many.
+    seconds : of wall time; no new iteration begins later, s.
+    asymmetry : largest difference of W from its transpose that is accepted, in parts of the contacts' own mobilities.
+        W is used as it is; dimensionless.
+    must_converge : raise a `ConvergenceError` where the tolerance is not reached, which has the best forces found as
+        `solution`. Else a warning is logged, and they are returned with their residual.
+
+    Returns
+    -------
+    FrictionSolution
+        Its residual is |D r - P_K(D r - (u + mu |u_t| e_n))|/|q|, the natural map of the problem (Acary, Bremond, Huber
+        2018), with Euclidean norms, P_K the projection on the friction cones, and D the contacts' own mobilities: of
+        each the mean of the diagonal of its block of W. It does not depend on units, nor on the choice of tangents.
+
+    Raises
+    ------
+    ValueError : the shapes do not fit; elements are not finite; mu or a diagonal element of W is negative; W is not
+        symmetric.
+    ConvergenceError : the tolerance is not reached, and `must_converge`.
+    """
     began = time.perf_counter()
+    if not tolerance > 0.0:
+        raise ValueError(f"tolerance = {tolerance!r}; needed is a positive number, as 1e-12, which is near rounding")
     problem = scaled_problem(W, q, mu, tangents, asymmetry)
-
-    def in_time() -> bool:
-        return time.perf_counter() - began < seconds
-
-    best = _start(problem, start)
-    least = problem.residual(best)
-    first, steps = 0, 0
-    if least > tolerance:
-        best, least, first, steps = _attempts(
-            problem, best, least, tolerance, first_order_iterations, newton_iterations, in_time
+    search = _Search(
+        problem,
+        _start(problem, start),
+        tolerance,
+        first_order_iterations,
+        newton_iterations,
+        lambda: time.perf_counter() - began < seconds,
+    )
+    search.run()
+    found = _solution(problem, search)
+    if not found.converged:
+        message = (
+            f"a contact problem of {len(problem.mu)} contacts is solved to a residual of {found.residual:.1e} of |q| only, "
+            f"not to {tolerance:.1e}, after {found.first_order_iterations} first-order iterations and "
+            f"{found.newton_iterations} Newton steps; there may be no solution"
         )
-    return _solution(problem, best, least, tolerance, first, steps, must_converge)
+        if must_converge:
+            raise ConvergenceError(message, solution=found)
+        logger.warning(message)
+    return found
 
 
-def _attempts(
-    problem: FrictionProblem,
-    start: Vector,
-    residual: float,
-    tolerance: float,
-    most_first: int,
-    most_steps: int,
-    in_time: Callable[[], bool],
-) -> tuple[Vector, float, int, int]:
-    """The best forces, their residual, the first-order iterations and the Newton steps."""
-    best, least, steps = start, residual, 0
-    splitting: Splitting | None = None
+class _Search:
+    """The methods in their order, and the best forces that they have found."""
 
-    def better(found: Vector, left: float, done: int = 0) -> bool:
-        nonlocal best, least, steps
-        if left < least:
-            best, least = found, left
-        steps += done
-        return least <= tolerance or steps >= most_steps or not in_time()
+    def __init__(
+        self,
+        problem: FrictionProblem,
+        start: Vector,
+        tolerance: float,
+        most_first: int,
+        most_steps: int,
+        in_time: Callable[[], bool],
+    ) -> None:
+        self.problem, self.tolerance, self.in_time = problem, tolerance, in_time
+        self.best, self.least = start, problem.residual(start)
+        self.first, self.steps, self._most_first, self._most_steps = 0, 0, most_first, most_steps
 
-    goal, most, once_more = GOAL, FIRST_ITERATIONS, True
-    while True:
-        near = start
-        if least > goal or not once_more:
-            splitting = splitting or Splitting(problem, start)
-            left = splitting.run(goal, min(most, most_first - splitting.iterations), in_time)
-            near = splitting.forces
-            if better(near, left):
+    def run(self) -> None:
+        """From quick to slow: whole Newton steps, proximal points, less friction first; then again from nearer."""
+        goal, most, near = GOAL, FIRST_ITERATIONS, self.best
+        splitting: Splitting | None = None
+        while not self._done():
+            # a start that is near needs none of it
+            if splitting is not None or self.least > goal:
+                splitting = splitting or Splitting(self.problem, near)
+                left = splitting.run(goal, min(most, self._most_first - self.first), self.in_time)
+                self.first, near = splitting.iterations, splitting.forces
+                self._take(near, left, 0)
+            self._newton(newton, near)
+            self._newton(proximal_point, near)
+            if goal == GOAL and self.problem.mu.any() and not self._done():
+                near, steps = less_friction(self.problem, near, self._most_steps - self.steps, self.in_time)
+                self._take(near, self.problem.residual(near), steps)
+                self._newton(proximal_point, near)
+            if self.first >= self._most_first:
                 break
-        if better(*newton(problem, near, tolerance, min(NEWTON_STEPS, most_steps - steps), in_time)):
-            break
-        if better(*proximal_point(problem, near, tolerance, min(PROXIMAL_STEPS, most_steps - steps), in_time)):
-            break
-        if once_more and problem.mu.any():
-            near, done = less_friction(problem, near, most_steps - steps, in_time)
-            if better(near, problem.residual(near), done) or better(
-                *proximal_point(problem, near, tolerance, min(PROXIMAL_STEPS, most_steps - steps), in_time)
-            ):
-                break
-        if splitting is not None and splitting.iterations >= most_first:
-            break
-        once_more, goal, most = False, NEARER * goal, most_first
-    return best, least, splitting.iterations if splitting else 0, steps
+            splitting = splitting or Splitting(self.problem, self.best)
+            goal, most = NEARER * goal, self._most_first
+
+    def _newton(self, method: Any, start: Vector) -> None:
+        if not self._done():
+            self._take(*method(self.problem, start, self.tolerance, self._most_steps - self.steps, self.in_time))
+
+    def _take(self, forces: Vector, residual: float, steps: int) -> None:
+        self.steps += steps
+        if residual < self.least:
+            self.best, self.least = forces, residual
+
+    def _done(self) -> bool:
+        return self.least <= self.tolerance or self.steps >= self._most_steps or not self.in_time()
 
 
 def _start(problem: FrictionProblem, start: Any) -> Vector:
+    """Scaled forces to start from: none, where those that are given are not nearer."""
     rows = len(problem.q)
     none = np.zeros(rows)
     if start is None:
@@ -137,32 +192,18 @@ def _start(problem: FrictionProblem, start: Any) -> Vector:
     return given if problem.residual(given) < problem.residual(none) else none
 
 
-def _solution(
-    problem: FrictionProblem,
-    forces: Vector,
-    residual: float,
-    tolerance: float,
-    first: int,
-    steps: int,
-    must_converge: bool,
-) -> FrictionSolution:
+def _solution(problem: FrictionProblem, search: _Search) -> FrictionSolution:
+    forces, residual = search.best, search.least
     # within the cones exactly, where that costs no accuracy
     inside = problem.projected(forces)
     left = problem.residual(inside)
-    if left <= max(residual, tolerance):
+    if left <= max(residual, search.tolerance):
         forces, residual = inside, left
     u = problem.root * problem.blocks(problem.velocities(forces))
     r = problem.blocks(forces) / problem.root
-    modes = np.where(lengths(u[:, 1:]) > max(10.0 * residual, 1e-12) * problem.size, "slip", "stick")
+    modes = np.where(lengths(u[:, 1:]) > max(SURELY * residual, SLIDES) * problem.size, "slip", "stick")
     modes[problem.mu == 0.0] = "slip"
     modes[r[:, 0] <= 0.0] = "open"
-    found = FrictionSolution(r.ravel(), u.ravel(), modes, residual, residual <= tolerance, first, steps)
-    if not found.converged:
-        message = (
-            f"a contact problem of {len(r)} contacts is solved to a residual of {residual:.1e} of |q| only, not to "
-            f"{tolerance:.1e}, after {first} first-order iterations and {steps} Newton steps; there may be no solution"
-        )
-        if must_converge:
-            raise ConvergenceError(message, solution=found)
-        logger.warning(message)
-    return found
+    return FrictionSolution(
+        r.ravel(), u.ravel(), modes, residual, residual <= search.tolerance, search.first, search.steps
+    )
