@@ -70,6 +70,19 @@ class FrictionProblem:
         found[below] = 0.0
         return found.ravel()
 
+    def compliant(self, compliance: Vector) -> tuple["FrictionProblem", Vector]:
+        """The problem with contacts that give way by a compliance (n,), in parts of their own mobilities; and the
+        factors (n p,) by which its scaled forces are multiplied to give those of this problem."""
+        factor = np.repeat(1.0 / np.sqrt(1.0 + compliance), 1 + self.tangents)
+        added = np.repeat(compliance, 1 + self.tangents)
+        if sparse.issparse(self.matrix):
+            each, more = (sparse.dia_array((x[None, :], [0]), shape=self.matrix.shape) for x in (factor, added))
+            matrix = (each @ (self.matrix + more) @ each).tocsr()
+        else:
+            matrix = (self.matrix + np.diag(added)) * factor * factor[:, None]
+        root = self.root * np.sqrt(1.0 + compliance)[:, None]
+        return FrictionProblem(matrix, factor * self.q, self.mu, self.tangents, root, self.size), factor
+
     def residual(self, r: Vector, u: Vector | None = None) -> float:
         """|D r - P_K(D r - (u + mu |u_t| e_n))| / |q| in the units as given, D the contacts' mobilities; infinite for
         forces that are no numbers."""

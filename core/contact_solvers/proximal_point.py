@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy import sparse
 
 from .friction_problem import FrictionProblem, Vector
 from .semismooth_newton import Equations, equations, newton_step
@@ -44,14 +43,16 @@ def proximal_point(
     size = float(np.linalg.norm(problem.q))
     while least > tolerance and steps < min(most, MOST_STEPS) and in_time():
         goal = size * min(ROUGHEST, PART * least)
-        found, solved, done = _subproblem(_softened(problem, eps, centre), centre, goal)
+        soft, factor = problem.compliant(np.full(len(problem.mu), eps))
+        soft = replace(soft, q=soft.q - eps * factor * centre)
+        found, solved, done = _subproblem(soft, centre / factor, goal)
         steps += done
         if not solved:
             eps *= GROW
             if eps > MOST:
                 break
             continue
-        centre = found
+        centre = factor * found
         left = problem.residual(centre)
         if left < least:
             least, best = left, centre
@@ -72,12 +73,6 @@ def less_friction(
         )
         steps += done
     return forces, steps
-
-
-def _softened(problem: FrictionProblem, eps: float, centre: Vector) -> FrictionProblem:
-    matrix, rows = problem.matrix, len(problem.q)
-    matrix = (matrix + eps * sparse.eye_array(rows)).tocsr() if sparse.issparse(matrix) else matrix + eps * np.eye(rows)
-    return replace(problem, matrix=matrix, q=problem.q - eps * centre)
 
 
 def _subproblem(problem: FrictionProblem, start: Vector, goal: float) -> tuple[Vector, bool, int]:

@@ -23,8 +23,9 @@ from .friction_problem import FrictionProblem, Vector, lengths
 
 MOST_STEPS, PATIENCE = 40, 4
 """Steps of one attempt; steps without an improvement before the best forces are taken up again."""
-FIRST, LEAST, MOST = 1e-3, 1e-10, 1.0
-"""Proximal regularisation at first, at least, and above which an attempt ends; in parts of the contacts' own mobilities."""
+FIRST, NEAR, LEAST, MOST = 1e-3, 1e-7, 1e-10, 1.0
+"""Proximal regularisation at first, from a start that is near (more would not keep how contacts share loads), at least,
+and above which an attempt ends; in parts of the contacts' own mobilities."""
 QUICK, DROP_QUICK, DROP, GROW = 0.3, 0.03, 0.3, 30.0
 """Part of the residual below which eps drops quickly; factors of eps after quick, other and no improvement."""
 TINY = np.finfo(np.float64).tiny
@@ -48,8 +49,8 @@ def newton(
     best, forces, steps = start, start, 0
     least = natural = problem.residual(start)
     at = equations(problem, start)
-    value = norm = float(np.linalg.norm(at.left))
-    eps, waited, lowest, taken = min(FIRST, least), 0, norm, start
+    value = lowest = float(np.linalg.norm(at.left))
+    eps, waited, taken = max(min(FIRST, least), NEAR), 0, start
     while natural > tolerance and steps < min(most, MOST_STEPS) and in_time():
         change = newton_step(problem, forces, at, eps)
         steps += 1

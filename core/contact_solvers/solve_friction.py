@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..errors import ConvergenceError
 from .friction_problem import FrictionProblem, Vector, lengths, scaled_problem
+from .least_friction_forces import MOVED, least_forces
 from .proximal_point import less_friction, proximal_point
 from .semismooth_newton import newton
 from .splitting import Splitting
@@ -38,6 +39,7 @@ class FrictionSolution:
     converged : whether the residual is at most the tolerance.
     first_order_iterations : of the alternating directions, dimensionless.
     newton_iterations : steps of Newton's method, each with a factorisation, dimensionless.
+    least : whether the forces are the limit of those of equally compliant contacts, which was asked for.
     """
 
     forces: Vector
@@ -47,6 +49,7 @@ class FrictionSolution:
     converged: bool
     first_order_iterations: int
     newton_iterations: int
+    least: bool
 
 
 def solve_friction(
@@ -56,6 +59,7 @@ def solve_friction(
     *,
     tangents: int = 2,
     start: Any = None,
+    least: bool = False,
     tolerance: float = 1e-12,
     first_order_iterations: int = 5000,
     newton_iterations: int = 1000,
@@ -70,8 +74,8 @@ def solve_friction(
     The velocities may be accelerations, or those after an impact; the forces then are impulses.
 
     Where contacts repeat each other W is singular, and the problem leaves open how they share a load: one solution is
-    given. Contacts that slip in different directions are braked by what each carries, so that their velocities differ
-    with it too. If friction is large a problem may also have several solutions with other modes, or none.
+    given, with `least` that of equally compliant contacts. Contacts that slip in different directions are braked by
+    what each carries, so that their velocities differ with it too. If friction is large a problem may also have several solutions with other modes, or none.
 
     Parameters
     ----------
@@ -81,6 +85,8 @@ def solve_friction(
     mu : coefficients of friction, (n,) or one for all, dimensionless.
     tangents : of each contact: 2 in space, 1 in the plane, 0 without friction (mu is then of no account).
     start : forces to start from, (n p,), of a problem nearby; N s.
+    least : take the forces of rigid contacts as the limit of those of equally compliant ones, where the path to it is
+        found (docs/load-sharing.md). It takes longer, and `start` is not used.
     tolerance : of the residual, dimensionless.
     first_order_iterations, newton_iterations : at most so many.
     seconds : of wall time; no new iteration begins later, s.
@@ -114,6 +120,8 @@ def solve_friction(
         newton_iterations,
         lambda: time.perf_counter() - began < seconds,
     )
+    if least:
+        search.follow_compliance()
     search.run()
     found = _solution(problem, search)
     if not found.converged:
@@ -129,7 +137,7 @@ def solve_friction(
 
 
 class _Search:
-    """The methods in their order, and the best forces that they have found."""
+    """The methods in their order, and the best forces found."""
 
     def __init__(
         self,
@@ -143,6 +151,17 @@ class _Search:
         self.problem, self.tolerance, self.in_time = problem, tolerance, in_time
         self.best, self.least = start, problem.residual(start)
         self.first, self.steps, self._most_first, self._most_steps = 0, 0, most_first, most_steps
+        self.limit = False
+
+    def follow_compliance(self) -> None:
+        """The limit of compliant contacts, if the exact solution next to it is one."""
+        forces, steps = least_forces(self.problem, self._most_steps, self.in_time)
+        self.steps += steps
+        if forces is not None:
+            self._take(forces, self.problem.residual(forces), 0)
+            self._newton(newton, forces)
+            moved = float(np.linalg.norm(self.best - forces))
+            self.limit = self.least <= self.tolerance and moved <= MOVED * float(np.linalg.norm(forces))
 
     def run(self) -> None:
         """From quick to slow: whole Newton steps, proximal points, less friction first; then again from nearer."""
@@ -205,5 +224,5 @@ def _solution(problem: FrictionProblem, search: _Search) -> FrictionSolution:
     modes[problem.mu == 0.0] = "slip"
     modes[r[:, 0] <= 0.0] = "open"
     return FrictionSolution(
-        r.ravel(), u.ravel(), modes, residual, residual <= search.tolerance, search.first, search.steps
+        r.ravel(), u.ravel(), modes, residual, residual <= search.tolerance, search.first, search.steps, search.limit
     )

@@ -128,6 +128,31 @@ def test_random_problems(seed, tangents):
     np.testing.assert_array_equal(found.forces.reshape(n, -1)[found.modes == "open"], 0.0)
 
 
+def test_least_forces_are_shared_alike():
+    """Four feet of a square carry a quarter each; many that hold, what the pseudoinverse says."""
+    w, q = on_feet(ring(4), np.array([3.0, 0, -1.0, 0, 0, 0]), height=0.0)
+    found = solve_friction(w, q, 0.4, least=True)
+    assert found.least and found.converged
+    np.testing.assert_allclose(found.forces[::3], 0.25, rtol=1e-6)
+    w, q = on_feet(ring(20), np.array([0.1, 0.05, -1.0, 0.1, 0, 0]), height=0.1)
+    found = solve_friction(w, q, 0.7, least=True)
+    assert found.least and set(found.modes) == {"stick"}
+    np.testing.assert_allclose(found.forces, -np.linalg.pinv(w, rcond=1e-10) @ q, atol=1e-6)
+    assert not solve_friction(w, q, 0.7).least
+
+
+@pytest.mark.parametrize("spin", [0.0, 2.0, 9.0])
+def test_least_forces_do_not_depend_on_the_order_nor_on_the_start(spin):
+    w, q = on_feet(ring(9), np.array([3.0, 0, -1.0, 0, 0.1, spin]), height=0.1)
+    order = np.random.default_rng(0).permutation(9)
+    rows = (3 * order[:, None] + np.arange(3)).ravel()
+    found = solve_friction(w, q, 0.4, least=True)
+    other = solve_friction(w[np.ix_(rows, rows)], q[rows], 0.4, least=True)
+    assert found.least and other.least
+    np.testing.assert_allclose(other.forces, found.forces[rows], atol=1e-6)
+    assert left_of_conditions(w, q, np.full(9, 0.4), found.forces) < 1e-11
+
+
 def by_modes(w, q, mu):
     """Velocities of every combination of open, stick, slip to either side that fulfils Coulomb's law in the plane."""
     n, all_found = len(mu), []
