@@ -9,12 +9,13 @@ each contact is scaled by the root of its own mobility d_i, the mean of the diag
 has a mean diagonal of 1, forces and velocities have the same dimension, and the projections need no parameter.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+from scipy.sparse import csgraph
 
 Vector = npt.NDArray[np.float64]
 
@@ -83,6 +84,23 @@ class FrictionProblem:
         root = self.root * np.sqrt(1.0 + compliance)[:, None]
         return FrictionProblem(matrix, factor * self.q, self.mu, self.tangents, root, self.size), factor
 
+    def islands(self) -> list[Vector]:
+        """Numbers of the contacts that act on each other, for each such set; of a dense matrix all are one set."""
+        n, rows = len(self.mu), 1 + self.tangents
+        if not sparse.issparse(self.matrix):
+            return [np.arange(n)]
+        by_rows = self.matrix.tocoo()
+        near = sparse.coo_array((np.ones(by_rows.nnz), (by_rows.row // rows, by_rows.col // rows)), shape=(n, n))
+        count, label = csgraph.connected_components(near.tocsr(), directed=False)
+        return np.split(np.argsort(label, kind="stable"), np.bincount(label, minlength=count).cumsum()[:-1])
+
+    def part(self, contacts: Vector) -> tuple["FrictionProblem", Vector]:
+        """The problem of an island, its residual in parts of the whole |q|, and its rows in this one."""
+        rows = ((1 + self.tangents) * contacts[:, None] + np.arange(1 + self.tangents)).ravel()
+        matrix = self.matrix[rows][:, rows]
+        matrix = matrix.toarray() if len(rows) < DENSE_BELOW else matrix
+        return replace(self, matrix=matrix, q=self.q[rows], mu=self.mu[contacts], root=self.root[contacts]), rows
+
     def residual(self, r: Vector, u: Vector | None = None) -> float:
         """|D r - P_K(D r - (u + mu |u_t| e_n))| / |q| in the units as given, D the contacts' mobilities; infinite for
         forces that are no numbers."""
@@ -121,7 +139,9 @@ def scaled_problem(w: Any, q: Any, mu: Any, tangents: int, asymmetry: float) -> 
     own = w.diagonal().reshape(n, rows).mean(axis=1)
     if (own < 0.0).any():
         i = int(own.argmin())
-        raise ValueError(f"W has negative diagonal elements at contact {i}; W must be symmetric and positive semidefinite")
+        raise ValueError(
+            f"W has negative diagonal elements at contact {i}; W must be symmetric and positive semidefinite"
+        )
     # one that nothing can move has any scale
     own[own == 0.0] = own.max(initial=0.0) or 1.0
     root = np.sqrt(own)
@@ -147,7 +167,9 @@ def _numbers(name: str, given: Any) -> Vector:
 
 
 def _matrix(w: Any, rows: int) -> Any:
-    found = sparse.csr_array(w if sparse.issparse(w) else np.atleast_2d(np.asarray(w, dtype=np.float64)), dtype=np.float64)
+    found = sparse.csr_array(
+        w if sparse.issparse(w) else np.atleast_2d(np.asarray(w, dtype=np.float64)), dtype=np.float64
+    )
     if rows == 0 and 0 in found.shape:
         return sparse.csr_array((0, 0))
     if found.shape != (rows, rows):

@@ -3,7 +3,6 @@
 import logging
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,18 +11,12 @@ import numpy.typing as npt
 
 from ..errors import ConvergenceError
 from .friction_problem import FrictionProblem, Vector, lengths, scaled_problem
-from .least_friction_forces import MOVED, least_forces
-from .proximal_point import less_friction, proximal_point
-from .semismooth_newton import newton
-from .splitting import Splitting
+from .friction_search import Search
 
 logger = logging.getLogger(__name__)
 
-GOAL, NEARER, FIRST_ITERATIONS = 1e-3, 0.03, 500
-"""Residual to which the first-order method goes before the others are tried, factor from one such attempt to the next,
-and iterations at most before the first."""
 SLIDES, SURELY = 1e-12, 10.0
-"""Sliding speed, in parts of |q|, above which a contact slips; and factor of the residual, which is more where that is."""
+"""Sliding speed, in parts of |q|, above which a contact slips; factor of the residual, where that is more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +46,7 @@ class FrictionSolution:
 
 
 def solve_friction(
-    W: Any,  # noqa: N803
+    W: Any,
     q: Any,
     mu: Any,
     *,
@@ -75,7 +68,8 @@ def solve_friction(
 
     Where contacts repeat each other W is singular, and the problem leaves open how they share a load: one solution is
     given, with `least` that of equally compliant contacts. Contacts that slip in different directions are braked by
-    what each carries, so that their velocities differ with it too. If friction is large a problem may also have several solutions with other modes, or none.
+    what each carries, so that their velocities differ with it too. If friction is large a problem may also have several
+    solutions with other modes, or none.
 
     Parameters
     ----------
@@ -88,7 +82,7 @@ def solve_friction(
     least : take the forces of rigid contacts as the limit of those of equally compliant ones, where the path to it is
         found (docs/load-sharing.md). It takes longer, and `start` is not used.
     tolerance : of the residual, dimensionless.
-    first_order_iterations, newton_iterations : at most so many.
+    first_order_iterations, newton_iterations : at most so many, for each island of contacts that act on each other.
     seconds : of wall time; no new iteration begins later, s.
     asymmetry : largest difference of W from its transpose that is accepted, in parts of the contacts' own mobilities.
         W is used as it is; dimensionless.
@@ -112,7 +106,7 @@ def solve_friction(
     if not tolerance > 0.0:
         raise ValueError(f"tolerance = {tolerance!r}; needed is a positive number, as 1e-12, which is near rounding")
     problem = scaled_problem(W, q, mu, tangents, asymmetry)
-    search = _Search(
+    search = Search(
         problem,
         _start(problem, start),
         tolerance,
@@ -126,76 +120,14 @@ def solve_friction(
     found = _solution(problem, search)
     if not found.converged:
         message = (
-            f"a contact problem of {len(problem.mu)} contacts is solved to a residual of {found.residual:.1e} of |q| only, "
-            f"not to {tolerance:.1e}, after {found.first_order_iterations} first-order iterations and "
+            f"a contact problem of {len(problem.mu)} contacts is solved to a residual of {found.residual:.1e} of |q| "
+            f"only, not to {tolerance:.1e}, after {found.first_order_iterations} first-order iterations and "
             f"{found.newton_iterations} Newton steps; there may be no solution"
         )
         if must_converge:
             raise ConvergenceError(message, solution=found)
         logger.warning(message)
     return found
-
-
-class _Search:
-    """The methods in their order, and the best forces found."""
-
-    def __init__(
-        self,
-        problem: FrictionProblem,
-        start: Vector,
-        tolerance: float,
-        most_first: int,
-        most_steps: int,
-        in_time: Callable[[], bool],
-    ) -> None:
-        self.problem, self.tolerance, self.in_time = problem, tolerance, in_time
-        self.best, self.least = start, problem.residual(start)
-        self.first, self.steps, self._most_first, self._most_steps = 0, 0, most_first, most_steps
-        self.limit = False
-
-    def follow_compliance(self) -> None:
-        """The limit of compliant contacts, if the exact solution next to it is one."""
-        forces, steps = least_forces(self.problem, self._most_steps, self.in_time)
-        self.steps += steps
-        if forces is not None:
-            self._take(forces, self.problem.residual(forces), 0)
-            self._newton(newton, forces)
-            moved = float(np.linalg.norm(self.best - forces))
-            self.limit = self.least <= self.tolerance and moved <= MOVED * float(np.linalg.norm(forces))
-
-    def run(self) -> None:
-        """From quick to slow: whole Newton steps, proximal points, less friction first; then again from nearer."""
-        goal, most, near = GOAL, FIRST_ITERATIONS, self.best
-        splitting: Splitting | None = None
-        while not self._done():
-            # a start that is near needs none of it
-            if splitting is not None or self.least > goal:
-                splitting = splitting or Splitting(self.problem, near)
-                left = splitting.run(goal, min(most, self._most_first - self.first), self.in_time)
-                self.first, near = splitting.iterations, splitting.forces
-                self._take(near, left, 0)
-            self._newton(newton, near)
-            self._newton(proximal_point, near)
-            if goal == GOAL and self.problem.mu.any() and not self._done():
-                near, steps = less_friction(self.problem, near, self._most_steps - self.steps, self.in_time)
-                self._take(near, self.problem.residual(near), steps)
-                self._newton(proximal_point, near)
-            if self.first >= self._most_first:
-                break
-            splitting = splitting or Splitting(self.problem, self.best)
-            goal, most = NEARER * goal, self._most_first
-
-    def _newton(self, method: Any, start: Vector) -> None:
-        if not self._done():
-            self._take(*method(self.problem, start, self.tolerance, self._most_steps - self.steps, self.in_time))
-
-    def _take(self, forces: Vector, residual: float, steps: int) -> None:
-        self.steps += steps
-        if residual < self.least:
-            self.best, self.least = forces, residual
-
-    def _done(self) -> bool:
-        return self.least <= self.tolerance or self.steps >= self._most_steps or not self.in_time()
 
 
 def _start(problem: FrictionProblem, start: Any) -> Vector:
@@ -211,7 +143,7 @@ def _start(problem: FrictionProblem, start: Any) -> Vector:
     return given if problem.residual(given) < problem.residual(none) else none
 
 
-def _solution(problem: FrictionProblem, search: _Search) -> FrictionSolution:
+def _solution(problem: FrictionProblem, search: Search) -> FrictionSolution:
     forces, residual = search.best, search.least
     # within the cones exactly, where that costs no accuracy
     inside = problem.projected(forces)

@@ -106,7 +106,7 @@ def test_a_body_that_spins_on_a_ring_of_feet(n):
 
 @pytest.mark.parametrize("angle", [0.3, 1.0])
 def test_a_wedge_between_two_walls(angle):
-    """A point of 1 kg falls at 1 m/s between walls that meet at its place: the squeeze is open, what they carry is not."""
+    """A point of 1 kg falls at 1 m/s between walls that meet there: the squeeze is open, what they carry is not."""
     g = np.array([[c * np.cos(angle), np.sin(angle), np.sin(angle), -c * np.cos(angle)] for c in (1, -1)]).reshape(4, 2)
     found = solve_friction(g @ g.T, g @ [0.0, -1.0], 0.5, tangents=1)
     np.testing.assert_allclose(g.T @ found.forces, [0.0, 1.0], atol=1e-11)
@@ -268,7 +268,7 @@ def test_no_contacts(w):
 
 
 def test_contacts_that_leave_or_rest_have_no_forces():
-    w, q = free(np.random.default_rng(9), 3, 5)
+    w, _ = free(np.random.default_rng(9), 3, 5)
     for motion in (np.zeros(15), np.tile([1.0, 3.0, -2.0], 5)):
         found = solve_friction(w, motion, 0.5)
         assert found.residual == 0.0 and not found.forces.any() and set(found.modes) == {"open"}
@@ -282,18 +282,18 @@ def crushed():
 
 def test_a_problem_without_a_solution_says_so(caplog):
     with caplog.at_level(logging.WARNING):
-        found = solve_friction(*crushed(), 0.0, tangents=0)
+        found = solve_friction(*crushed(), 0.0, tangents=0, first_order_iterations=600)
     assert not found.converged and found.residual > 0.1
     assert "of 2 contacts is solved to a residual of" in caplog.text
     with pytest.raises(ConvergenceError, match="there may be no solution") as raised:
-        solve_friction(*crushed(), 0.0, tangents=0, must_converge=True)
+        solve_friction(*crushed(), 0.0, tangents=0, first_order_iterations=600, must_converge=True)
     assert raised.value.solution.residual == pytest.approx(found.residual)
 
 
 def test_a_contact_that_nothing_moves():
     """W = 0: it can open, not be held."""
     assert solve_friction(np.zeros((3, 3)), [1.0, 2.0, 0.0], 0.5).converged
-    assert not solve_friction(np.zeros((3, 3)), [-1.0, 2.0, 0.0], 0.5).converged
+    assert not solve_friction(np.zeros((3, 3)), [-1.0, 2.0, 0.0], 0.5, first_order_iterations=600).converged
 
 
 def test_budgets_end_the_work(caplog):
@@ -342,14 +342,14 @@ def test_a_solution_is_frozen():
         found.residual = 0.0
 
 
-def test_thousands_of_contacts():
-    """1000 bodies on three feet each, independent of each other: each does what it does alone."""
+def test_many_bodies_at_once():
+    """300 bodies on three feet each, independent of each other: each does what it does alone."""
     rng = np.random.default_rng(11)
-    bodies = [on_feet(ring(3), rng.normal(size=6) - [0, 0, 3, 0, 0, 0], height=0.2) for _ in range(1000)]
+    bodies = [on_feet(ring(3), rng.normal(size=6) - [0, 0, 3, 0, 0, 0], height=0.2) for _ in range(300)]
     w, q = sparse.block_diag([body[0] for body in bodies]), np.concatenate([body[1] for body in bodies])
     found = solve_friction(w, q, 0.5)
     assert found.converged
-    for i in (0, 100, 999):
+    for i in (0, 100, 299):
         alone = solve_friction(*bodies[i], 0.5)
         np.testing.assert_allclose(found.velocities[9 * i : 9 * i + 9], alone.velocities, atol=1e-8)
 
