@@ -18,6 +18,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 Vector = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
 
 DENSE_BELOW = 150
 """Rows below which the matrix is dense: a dense factorisation is as quick as a sparse one there."""
@@ -84,7 +85,7 @@ class FrictionProblem:
         root = self.root * np.sqrt(1.0 + compliance)[:, None]
         return FrictionProblem(matrix, factor * self.q, self.mu, self.tangents, root, self.size), factor
 
-    def islands(self) -> list[Vector]:
+    def islands(self) -> list[Places]:
         """Numbers of the contacts that act on each other, for each such set; of a dense matrix all are one set."""
         n, rows = len(self.mu), 1 + self.tangents
         if not sparse.issparse(self.matrix):
@@ -94,7 +95,7 @@ class FrictionProblem:
         count, label = csgraph.connected_components(near.tocsr(), directed=False)
         return np.split(np.argsort(label, kind="stable"), np.bincount(label, minlength=count).cumsum()[:-1])
 
-    def part(self, contacts: Vector) -> tuple["FrictionProblem", Vector]:
+    def part(self, contacts: Places) -> tuple["FrictionProblem", Places]:
         """The problem of an island, its residual in parts of the whole |q|, and its rows in this one."""
         rows = ((1 + self.tangents) * contacts[:, None] + np.arange(1 + self.tangents)).ravel()
         matrix = self.matrix[rows][:, rows]

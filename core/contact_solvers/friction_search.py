@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .friction_problem import FrictionProblem, Vector
+from .friction_problem import FrictionProblem, Places, Vector
 from .least_friction_forces import MOVED, least_forces
 from .proximal_point import less_friction, proximal_point
 from .semismooth_newton import newton
@@ -112,7 +112,7 @@ class Search:
         return self.least <= self.tolerance or self.steps >= self._most_steps or not self.in_time()
 
 
-def _with(forces: Vector, rows: Vector, part: Vector) -> Vector:
+def _with(forces: Vector, rows: Places, part: Vector) -> Vector:
     found = forces.copy()
     found[rows] = part
     return found

@@ -141,6 +141,19 @@ def test_least_forces_are_shared_alike():
     assert not solve_friction(w, q, 0.7).least
 
 
+@pytest.mark.parametrize("seed", [6, 19])
+def test_large_friction(seed):
+    """Whole Newton steps do not find these: the subproblems of proximal points are solved."""
+    w, q = free(np.random.default_rng(seed), 6, 20)
+    found = solve_friction(w, q, 1.0)
+    assert found.converged and found.newton_iterations > 40
+    assert left_of_conditions(w, q, np.ones(20), found.forces) < 1e-11 * np.linalg.norm(q)
+    # beside others that are solved at once
+    other, motion = free(np.random.default_rng(0), 6, 40)
+    both = solve_friction(sparse.block_diag([w, other]), np.r_[q, motion], np.r_[np.ones(20), np.full(40, 0.1)])
+    assert both.converged
+
+
 @pytest.mark.parametrize("spin", [0.0, 2.0, 9.0])
 def test_least_forces_do_not_depend_on_the_order_nor_on_the_start(spin):
     w, q = on_feet(ring(9), np.array([3.0, 0, -1.0, 0, 0.1, spin]), height=0.1)
