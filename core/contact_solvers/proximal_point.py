@@ -23,8 +23,8 @@ FIRST, LEAST, MOST, GROW = 0.03, 1e-10, 1e4, 4.0
 """eps at first, at least, and at most, in parts of the contacts' own mobilities; factor where a subproblem fails."""
 DROP_FEW, DROP_SOME, DROP = 0.1, 0.3, 0.6
 """Factors of eps after few, some and more steps."""
-PART, ROUGHEST = 0.01, 1e-4
-"""Of what is left, to which a subproblem is solved; and of |q|, to which it is solved at least."""
+PART, ROUGHEST, FINEST = 0.01, 1e-4, 1e-14
+"""Of what is left, to which a subproblem is solved; and of |q|, to which it is solved at least, and at most."""
 FRICTION_PARTS, PART_TOLERANCE, PART_STEPS, PART_FIRST = (0.3, 0.6, 0.8, 0.9), 1e-9, 60, 0.01
 """Parts of the coefficients of friction on the way to them; what each is solved to, in how many steps, and its eps."""
 
@@ -42,7 +42,7 @@ def proximal_point(
     least, steps, eps = problem.residual(start), 0, first
     size = float(np.linalg.norm(problem.q))
     while least > tolerance and steps < min(most, MOST_STEPS) and in_time():
-        goal = size * min(ROUGHEST, PART * least)
+        goal = size * max(min(ROUGHEST, PART * least), FINEST)
         soft, factor = problem.compliant(np.full(len(problem.mu), eps))
         soft = replace(soft, q=soft.q - eps * factor * centre)
         found, solved, done = _subproblem(soft, centre / factor, goal)
