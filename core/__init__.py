@@ -10,6 +10,7 @@ from .lazy_import import late_names
 if TYPE_CHECKING:
     from .assembly.redundancy import RedundantRow
     from .compiled_model import CompiledModel, compile_model
+    from .contact_solvers.solve_friction import FrictionSolution, solve_friction
     from .contacts.angle_stop2d import AngleStop2D
     from .contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
     from .contacts.box2d import Box2D, DiskOnBox2D
@@ -124,7 +125,7 @@ if TYPE_CHECKING:
     )
     from .equations.errors import EquationError
     from .equations.system import EquationSystem, GapContact
-    from .errors import ConsistencyError, ModelError, SimulationError, TlismniError
+    from .errors import ConsistencyError, ConvergenceError, ModelError, SimulationError, TlismniError
     from .events import Event
     from .flexible.section_loads import (
         axial_force,
@@ -221,6 +222,7 @@ __all__ = [
     "ConstantVelocity3D",
     "ContactGroup2D",
     "ContactGroup3D",
+    "ConvergenceError",
     "ConvexPolyhedron3D",
     "CoordinateContact",
     "CoordinateDriver",
@@ -257,6 +259,7 @@ __all__ = [
     "Formula",
     "Frame2D",
     "FrictionLaw",
+    "FrictionSolution",
     "GapContact",
     "Gear2D",
     "Gear3D",
@@ -397,6 +400,7 @@ __all__ = [
     "section",
     "simulate",
     "simulate_many",
+    "solve_friction",
     "sphere_on_plane",
     "sphere_on_sphere",
     "stress",
@@ -425,7 +429,7 @@ __getattr__, __dir__ = late_names(
         ),
         ".equations.errors": "EquationError",
         ".equations.system": "EquationSystem GapContact",
-        ".errors": "ConsistencyError ModelError SimulationError TlismniError",
+        ".errors": "ConsistencyError ConvergenceError ModelError SimulationError TlismniError",
         ".events": "Event",
         ".flexible.section_loads": (
             "axial_force axial_strain bending_moment bending_stress curvature deformed_shape section stress"
@@ -452,6 +456,7 @@ __getattr__, __dir__ = late_names(
         ".simulation.simulation": "Simulation",
         ".simulation.state": "State",
         ".runs": "Runs",
+        ".contact_solvers.solve_friction": "FrictionSolution solve_friction",
         ".contacts.angle_stop2d": "AngleStop2D",
         ".contacts.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
         ".contacts.box2d": "Box2D DiskOnBox2D",

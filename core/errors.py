@@ -31,6 +31,19 @@ class ConsistencyError(TlismniError):
     """No consistent start could be found from the given q0, v0, or the constraints contradict each other."""
 
 
+class ConvergenceError(TlismniError):
+    """An iteration did not reach its tolerance, and was asked to raise then.
+
+    Attributes
+    ----------
+    solution : the best that was found, with its residual.
+    """
+
+    def __init__(self, message: str, *, solution: Any) -> None:
+        super().__init__(message)
+        self.solution = solution
+
+
 class SimulationError(TlismniError):
     """A run failed. Says when, in which loop, what was tried and what to change; carries what was computed.
 
