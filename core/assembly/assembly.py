@@ -291,8 +291,8 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
             names.append(f"{body.name}.{coordinate.name}")
     q0 = np.array([x for q, _ in states for x in q], dtype=np.float64)
     m_joints = len(row_names) - sum(len(rows) for rows in contact_rows.values())
-    sharing = (*numbering.joints.values(), *contacts)
-    compliances = {element.name: element.compliance for element in sharing if element.compliance != 1.0}
+    compliances = {joint.name: joint.compliance for joint in numbering.joints.values() if joint.compliance != 1.0}
+    compliances |= {contact.name: contact.compliance for contact in contacts if contact.compliance != 1.0}
     return Assembly(
         n=numbering.n,
         m=len(row_names),
