@@ -116,6 +116,8 @@ class Assembly:
     """Size of the mechanism, m."""
     row_scale: NDArray[np.float64] | None = None
     """How large each row of Phi typically is, (m,); None: as far as the coordinates' scales move it."""
+    compliance: NDArray[np.float64] | None = None
+    """Of the contact or joint that each row of Phi is of, (m,), relative to others; None: all 1."""
     longest_step: float = np.inf
     """Step beyond which error control could miss what a time function does, s."""
     rate_rows: frozenset[int] = frozenset()
@@ -289,6 +291,8 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
             names.append(f"{body.name}.{coordinate.name}")
     q0 = np.array([x for q, _ in states for x in q], dtype=np.float64)
     m_joints = len(row_names) - sum(len(rows) for rows in contact_rows.values())
+    compliances = {joint.name: joint.compliance for joint in numbering.joints.values() if joint.compliance != 1.0}
+    compliances |= {contact.name: contact.compliance for contact in contacts if contact.compliance != 1.0}
     return Assembly(
         n=numbering.n,
         m=len(row_names),
@@ -327,6 +331,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
         body_columns=columns,
         coordinate_scale=_coordinate_scale(numbering.length, columns, len(internal)),
         length=numbering.length,
+        compliance=np.array([compliances.get(name, 1.0) for name in row_names]) if compliances else None,
         rate_rows=frozenset(rate_rows),
         replaced_rows=_replaced_rows(contacts, massless, batches),
         derived=tuple(derived),

@@ -2,15 +2,16 @@
 
 Where closed contacts repeat each other (a block on four feet), or joints do (a door on two hinges), the constraints of
 some of them are implied by those of the others. The motion is the same with any multipliers lambda' = lambda + n,
-Phi_q^T n = 0. Forces of rigid contacts are the limit of those of equally compliant ones, A + eps C with eps -> 0.
+Phi_q^T n = 0. Forces of rigid contacts are the limit of those of compliant ones, A + eps C with eps -> 0.
 Multiplied by a null vector n of Phi_q^T, of which A is made, the equations (A + eps C) lambda + b = 0 leave
 n^T C lambda = 0 for any eps: of all multipliers that give the motion these are the ones of least C-norm (Tikhonov 1963;
 for multibody systems Wojtyra and Fraczek 2013, who compare such choices). So in place of the equation of each implied
 row the matrix has such a row, and sliding friction follows the normal forces that it gives.
 
-C is 1 for each normal and each tangent of a contact. Joints are rigid beside contacts, and share among themselves what
-contacts leave to them, with compliances of their own (`joint_compliance.py`). So the row of an implied contact has
-entries for contacts only, and that of an implied joint, whose null vector is of joints only, entries for joints.
+C is the relative compliance of a contact, for its normal and its tangents alike: 1 unless the model gives another.
+Joints are rigid beside contacts, and share among themselves what contacts leave to them, with compliances of their own
+(`joint_compliance.py`). So the row of an implied contact has entries for contacts only, and that of an implied joint,
+whose null vector is of joints only, entries for joints.
 
 The null vector of an implied row g is (-w, 1), Phi_q^T w = g^T. It is found by one solution with the transposed matrix
 of the equations, whatever rows of compatibility this has: where G are the rows of Phi_q that are solved for, B those of
@@ -154,20 +155,23 @@ def _load_gradients(ws: Any, st: Any, color: int, first: int) -> None:
 @internal
 def _still_null(ws: Any, st: Any, p: int) -> bool:
     """True if row p of compatibility, that of the contact whose gradient is in `rhs`, still is a null vector of the
-    gradients evaluated last, as finely as it was found; changes `rhs`. Where joints take part in it, whose multipliers
-    are none of its entries, it is not known to be one."""
+    gradients evaluated last, as finely as it was found; else `rhs` becomes what it leaves of them. Where joints take
+    part in it, whose multipliers are none of its entries, it is not known to be one."""
     n, m_act, size = ws.n, ws.m_act, 0.0
     rhs, scale, values = vec(ws.rhs, n), vec(ws.scale, n), vec(ws.values, ws.n_values)
     start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
     rows, own = vec(st.compatibility, st.n_sharing), st.n_jacobian
+    compliance, active = vec(building_at(ws.building).compliance, ws.m_ext), ivec(ws.active, m_act + ws.n_implied)
+    own_compliance = compliance[active[m_act + p]]
     own_start, own_col = ivec(st.jacobian_start, m_act + 1), ivec(st.jacobian_col, own)
     own_slot = ivec(st.jacobian_slot, own)
     for i in range(n):
         size = max(size, scale[i] * abs(rhs[i]))
     for j in range(start[p], start[p + 1]):
         if sharing[j] < m_act and rows[j] != 0.0:
+            part = rows[j] * own_compliance / compliance[active[sharing[j]]]
             for e in range(own_start[sharing[j]], own_start[sharing[j] + 1]):
-                rhs[own_col[e]] += rows[j] * values[own_slot[e]]
+                rhs[own_col[e]] += part * values[own_slot[e]]
     for i in range(n):
         if scale[i] * abs(rhs[i]) > STILL_COMPATIBLE * size:
             return False
@@ -196,8 +200,6 @@ def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
         # (most rows of contacts are of bodies that do not move against each other)
         still = contact >= 0 and _still_null(ws, st, contact)
         if not still:
-            if contact >= 0:
-                _load_gradients(ws, st, color, first)
             solve_transposed(lu_at(lu_address), ws.rhs)
         for p in range(first, ws.n_implied):
             row = active[m_act + p]
@@ -206,6 +208,9 @@ def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
                 at = sharing[e]
                 new = -rhs[n + at] if at < m_act else (1.0 if at == m_act + p else 0.0)
                 new *= compliance[active[at]] / own
+                if contact >= 0 and at < m_act:
+                    # what is solved for is what the row left
+                    new += rows[e]
                 if abs(new - rows[e]) * units[n + active[at]] > COMPATIBLE * unit:
                     changed = True
                     rows[e] = new

@@ -1,9 +1,9 @@
 """Which rows of joints share loads, and how compliant each of them is relative to the others.
 
-Redundant joints are the limit of equally compliant ones (`compatibility.py`): a displacement is 1 as compliant as
-another, and an angle 1/L^2, where L is the length of the model, so that a moment counts as the force that makes it at
-this arm. Norms of Euler parameters are no joints: their compliance is 0. Rows that are user-written equations have any
-unit, and their compliance is the square of their size.
+Redundant joints are the limit of compliant ones (`compatibility.py`): a displacement has the relative compliance c of
+its joint, 1 unless the model gives another, and an angle c/L^2, where L is the length of the model, so that a moment
+counts as the force that makes it at this arm. Norms of Euler parameters are no joints: their compliance is 0. Rows that
+are user-written equations have any unit, and their compliance is the square of their size.
 
 Two joints can repeat each other only where they are of one mechanism (`mechanisms.py`).
 """
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .assembly import Assembly
 from .mechanisms import mechanisms
+from .numbers import given_compliance
 
 NORM = "e0"
 """Coordinate of a body whose own row is the norm of its Euler parameters."""
@@ -21,16 +22,16 @@ NORM = "e0"
 def joint_compliance(assembly: Assembly) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Of each row of Phi its relative compliance, and the number of its mechanism, (m + 1,) each."""
     rows, cols = _pattern(assembly)
-    compliance = np.ones(assembly.m + 1)
+    compliance, m_joints = given_compliance(assembly), assembly.m_joints
     if assembly.row_scale is not None:
-        size = np.where(np.isfinite(assembly.row_scale) & (assembly.row_scale > 0.0), assembly.row_scale, 1.0)
-        compliance[: assembly.m] = size**2
+        size = assembly.row_scale[:m_joints]
+        compliance[:m_joints] = np.where(np.isfinite(size) & (size > 0.0), size, 1.0) ** 2
     else:
         moves = np.zeros(assembly.m + 1, dtype=bool)
         moves[rows[~assembly.is_angle[cols]]] = True
-        compliance[: assembly.m_joints][~moves[: assembly.m_joints]] = 1.0 / assembly.length**2
+        compliance[:m_joints][~moves[:m_joints]] /= assembly.length**2
         known = set(assembly.coordinate_names)
-        for row, name in enumerate(assembly.row_names[: assembly.m_joints]):
+        for row, name in enumerate(assembly.row_names[:m_joints]):
             if f"{name}.{NORM}" in known:
                 compliance[row] = 0.0
     return compliance, mechanisms(assembly.m + 1, assembly.n, rows, cols)

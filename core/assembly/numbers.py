@@ -19,6 +19,14 @@ def sticking(assembly: Assembly) -> NDArray[np.float64]:
     return np.array([c.coulomb.sticking_coefficient if c.coulomb else 0.0 for c in assembly.contacts], dtype=np.float64)
 
 
+def given_compliance(assembly: Assembly) -> NDArray[np.float64]:
+    """Compliance that the model gives the joint or contact of each row of Phi, relative to others, (m + 1,)."""
+    given = np.ones(assembly.m + 1)
+    if assembly.compliance is not None:
+        given[: assembly.m] = assembly.compliance
+    return given
+
+
 def level_scale(assembly: Assembly) -> NDArray[np.float64]:
     """What the coordinates are small or large against, (n,)."""
     return np.where(assembly.is_angle, assembly.coordinate_scale / ANGLES, assembly.coordinate_scale)

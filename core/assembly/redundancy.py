@@ -5,7 +5,7 @@ another too, but only there: a small finite motion along the other constraints t
 such a row at second order and leaves a redundant one at zero.
 
 The motion does not tell the multipliers of redundant constraints (Garcia de Jalon and Bayo 1994, Kinematic and Dynamic
-Simulation of Multibody Systems, 3.4, leave rows out by pivoting as well). They are those of equally compliant joints
+Simulation of Multibody Systems, 3.4, leave rows out by pivoting as well). They are those of compliant joints
 (`compatibility.py`).
 """
 
@@ -110,7 +110,7 @@ def find_redundant(workspace: Workspace) -> tuple[RedundantRow, ...]:
         evaluate_residuals(workspace.record)
     logger.warning(
         "%s; these rows are left out of the equations but checked. The motion does not tell how these joints share "
-        "their loads: they do as if all were equally compliant",
+        "their loads: they do as if all were equally compliant, or as their `compliance` says",
         "; ".join(f"{r.equation} repeats what {', '.join(r.repeats)} say" for r in found),
     )
     return found

@@ -76,9 +76,10 @@ class ScaledJacobian:
             return []
         number = mechanisms(*self.shape, self.rows, self.cols)
         order, by_row = np.argsort(number[self.rows], kind="stable"), np.argsort(number, kind="stable")
+        of_entries = number[self.rows][order]
         found = []
         for rows in np.split(by_row, np.flatnonzero(np.diff(number[by_row])) + 1):
-            ends = np.searchsorted(number[self.rows][order], [number[rows[0]], number[rows[0]] + 1])
+            ends = np.searchsorted(of_entries, [number[rows[0]], number[rows[0]] + 1])
             entries = order[ends[0] : ends[1]]
             cols, local = np.unique(self.cols[entries], return_inverse=True)
             matrix = np.zeros((len(rows), len(cols)))

@@ -34,7 +34,7 @@ from .assembly import Assembly
 from .building import engage_wanted
 from .evaluate import all_kernels
 from .joint_compliance import joint_compliance
-from .numbers import constraints_are_cheap, level_scale, release, sticking
+from .numbers import constraints_are_cheap, given_compliance, level_scale, release, sticking
 from .partition_building import partition_wanted
 from .patterns import FEW, entries_of_few, patterns, shows
 from .slots import MOST_STRUCTURES, Slots
@@ -156,7 +156,7 @@ class Workspace:
         self.slots = Slots(most_places(a), sparse, PROGRAM_LIMIT, len(self._shapes))
         arrays["units"] = np.ones(a.n + m_ext)  # of coordinates (with forces) and rows of Phi (with multipliers)
         arrays["left_out"] = np.zeros(m_ext, dtype=np.int64)
-        arrays["compliance"] = np.ones(m_ext)
+        arrays["compliance"] = given_compliance(a)
         arrays["mechanism"] = np.zeros(m_ext, dtype=np.int64)
         self._building = self._make_building(arrays)
         self._dropped_before: dict[frozenset[int], int] = {frozenset(): 0}
@@ -248,6 +248,7 @@ class Workspace:
         arrays["scale"][:] = assembly.coordinate_scale
         arrays["level_scale"][:] = level_scale(assembly)
         arrays["inputs"][: len(assembly.input_start), 0] = assembly.input_start
+        arrays["compliance"][:] = given_compliance(assembly)
         if self.dropped:
             self._take_compliance()
 
@@ -400,16 +401,26 @@ class Workspace:
     def _take_compliance(self) -> None:
         self.arrays["compliance"][:], self.arrays["mechanism"][:] = joint_compliance(self.assembly)
 
-    def joints_sharing(self, dropped: frozenset[int], closed: frozenset[int]) -> int:
-        """How many numbers the rows of compatibility of joints have if these rows are left out and contacts closed."""
+    def sharing_size(
+        self, dropped: frozenset[int], closed: frozenset[int], sticking: frozenset[int], implied: frozenset[int]
+    ) -> tuple[int, int]:
+        """How many rows are implied if the rows `dropped` of joints are left out and these contacts are closed, stick
+        and are implied (`structure_switch.key_of`), and how many numbers the rows of compatibility have."""
         replaced = {row for row, contacts in self.assembly.replaced_rows.items() if contacts & closed}
-        compliance, mechanism = joint_compliance(self.assembly)
+        left_out = dropped - replaced
+        by_contacts = len(implied) * (len(closed) + len(sticking))
+        if not left_out:
+            return len(implied), by_contacts
+        if self.dropped:
+            compliance, mechanism = self.arrays["compliance"], self.arrays["mechanism"]
+        else:
+            compliance, mechanism = joint_compliance(self.assembly)
         of_joints = np.arange(self.assembly.m_joints)
         shares = (compliance[of_joints] > 0.0) & ~np.isin(of_joints, sorted(replaced))
-        return sum(
-            int(np.sum((shares & (mechanism[of_joints] == mechanism[row])) | (of_joints == row)))
-            for row in dropped - replaced
+        by_joints = sum(
+            int(np.sum((shares & (mechanism[of_joints] == mechanism[row])) | (of_joints == row))) for row in left_out
         )
+        return len(implied) + len(left_out), by_contacts + by_joints
 
     def drop(self, rows: frozenset[int]) -> None:
         """Leave the redundant `rows` of joints out of the equations; they share the load with those that imply them."""

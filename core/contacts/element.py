@@ -9,7 +9,7 @@ from pydantic import model_validator
 from ..elements.base import BodyElement, Element, Numbering, Row
 from ..laws import ContactLaw, ForceLaw
 from ..laws.friction import CoulombFriction, Friction, LuGreFriction
-from ..model.base import Vector3
+from ..model.base import Positive, Vector3
 from ..model.markers import GROUND
 from ..model.signals import Constant, Signal
 from .moving_surface import Numbers
@@ -31,6 +31,9 @@ class ContactElement(Element):
     """Speed of a belt, m/s: at which the surface of a shape goes along past the body that carries it, a number or over
     time. In the plane along the first shape's outward normal turned by -90 degrees: to the right on a floor, clockwise
     round a disk or a box. Left out: the surface is fixed to its body."""
+    compliance: Positive = 1.0
+    """How far it gives way under a force over how far others do, dimensionless: where rigid contacts repeat each other,
+    normal forces and static friction are shared in that measure."""
 
     @model_validator(mode="after")
     def _friction_fits(self) -> "ContactElement":
@@ -46,6 +49,16 @@ class ContactElement(Element):
             raise ValueError(
                 f"contact '{self.name}': friction '{self.friction.type}' is regularised and belongs to a force law; "
                 f"a contact with {type(self.law).__name__} is a constraint: give it Coulomb friction"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _compliance_shares(self) -> "ContactElement":
+        if self.compliance != 1.0 and isinstance(self.law, ForceLaw):
+            raise ValueError(
+                f"contact '{self.name}' has a compliance of {self.compliance:g}, which says how contacts that are "
+                f"rigid share a load; with {type(self.law).__name__} its own stiffness does: change that, or leave "
+                "`compliance` out"
             )
         return self
 

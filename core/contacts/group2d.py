@@ -8,12 +8,12 @@ up (`event_detection/contact_sleeping.py`).
 
 from collections.abc import Iterable, Sequence
 from itertools import combinations, product
-from typing import Literal
+from typing import Any, Literal
 
 from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Vector3
+from ..model.base import Name, Positive, Vector3
 from ..model.markers import GROUND
 from ..model.signals import Signal
 from .box2d import Box2D, DiskOnBox2D
@@ -50,6 +50,7 @@ def contacts_between(
     surface_speed: float | Signal | None = None,
     surface_direction: Vector3 | None = None,
     surface_body: str | None = None,
+    compliance: float = 1.0,
 ) -> tuple[Contact2D | Contact3D, ...]:
     """Contacts of all pairs of `shapes` with each other, or of `shapes` with `others`, for a model's `contacts`.
 
@@ -62,6 +63,7 @@ def contacts_between(
     pass_through : pairs of kinds of shapes that have no contact, and pass through each other: ("Box3D", "Cylinder3D").
     surface_speed, surface_direction, surface_body : speed of the surface of one of the bodies, as that of a belt, m/s;
         in space along a direction in the frame of that body (`group_surfaces.py`).
+    compliance : of each of them, relative to other contacts.
 
     Raises
     ------
@@ -89,7 +91,8 @@ def contacts_between(
     for label, touching in named.items():
         for k, (one, other) in enumerate(touching):
             own = label if len(touching) == 1 else f"{label}_{k + 1}"
-            made.append(_contact(own, one, other, law, friction, turning))
+            more = {"name": own, "law": law, "friction": friction, "compliance": compliance}
+            made.append(_contact(one, other, turning, more))
     if not made:
         raise ModelError(
             f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
@@ -131,6 +134,8 @@ class ContactGroup2D(ContactGroup):
     -90 degrees, to the right on top of a box."""
     surface_body: Name | None = None
     """Name of the body whose surface moves, or "ground"; left out: none."""
+    compliance: Positive = 1.0
+    """How far each of its contacts gives way over how far others do, dimensionless."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
@@ -140,6 +145,7 @@ class ContactGroup2D(ContactGroup):
         return contacts_between(
             self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies,
             pass_through=self.pass_through, surface_speed=self.surface_speed, surface_body=self.surface_body,
+            compliance=self.compliance,
         )  # fmt: skip
 
 
@@ -181,24 +187,24 @@ def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupS
 
 
 def _contact(
-    name: str, a: GroupShape, other: GroupShape | SpatialPart, law: ContactLaw, friction: Friction | None,
-    turning: TurningFriction | None,
-) -> Contact2D | Contact3D:  # fmt: skip
+    a: GroupShape, other: GroupShape | SpatialPart, turning: TurningFriction | None, more: dict[str, Any]
+) -> Contact2D | Contact3D:
+    """The contact of a pair; `more` are the fields that those of all pairs have."""
     if isinstance(a, SpatialShape):
         assert isinstance(other, SpatialShape | SpatialPart)
-        return contact_in_space(name, a, other, law, friction, turning)
+        return contact_in_space(a, other, {**more, "turning": turning})
     if not isinstance(other, Disk2D):
         raise TypeError("the second shape of a pair is a disk")
     if isinstance(a, HalfPlane2D):
-        return DiskOnHalfPlane2D(name=name, plane=a, disk=other, law=law, friction=friction)
+        return DiskOnHalfPlane2D(plane=a, disk=other, **more)
     if isinstance(a, Disk2D):
-        return DiskOnDisk2D(name=name, a=a, b=other, law=law, friction=friction)
+        return DiskOnDisk2D(a=a, b=other, **more)
     if isinstance(a, Box2D):
-        return DiskOnBox2D(name=name, shape=a, disk=other, law=law, friction=friction)
+        return DiskOnBox2D(shape=a, disk=other, **more)
     if isinstance(a, Polygon2D):
-        return DiskOnPolygon2D(name=name, shape=a, disk=other, law=law, friction=friction)
+        return DiskOnPolygon2D(shape=a, disk=other, **more)
     if isinstance(a, Ring2D):
-        return DiskInRing2D(name=name, shape=a, disk=other, law=law, friction=friction)
+        return DiskInRing2D(shape=a, disk=other, **more)
     if isinstance(a, Segment2D):
-        return DiskOnSegment2D(name=name, segment=a, disk=other, law=law, friction=friction)
+        return DiskOnSegment2D(segment=a, disk=other, **more)
     raise TypeError("a disk touches no shapes of space")

@@ -4,7 +4,7 @@ from typing import Literal
 
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Vector3
+from ..model.base import Name, Positive, Vector3
 from ..model.signals import Signal
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
@@ -59,6 +59,8 @@ class ContactGroup3D(ContactGroup):
     """Direction in which it goes, dimensionless, in the frame of that body; of any length but zero."""
     surface_body: Name | None = None
     """Name of the body whose surface moves, or "ground"; left out: none."""
+    compliance: Positive = 1.0
+    """How far each of its contacts gives way over how far others do, dimensionless."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
@@ -71,4 +73,5 @@ class ContactGroup3D(ContactGroup):
             self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
             turning=self.turning, except_bodies=self.except_bodies, pass_through=self.pass_through,
             surface_speed=self.surface_speed, surface_direction=self.surface_direction, surface_body=self.surface_body,
+            compliance=self.compliance,
         )  # fmt: skip

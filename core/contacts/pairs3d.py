@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..errors import ModelError
-from ..laws import ContactLaw, ForceLaw
-from ..laws.friction import Friction, TurningFriction
+from ..laws import ForceLaw
 from ..model.markers import GROUND
 from ..model.words import an
 from .ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
@@ -87,12 +86,9 @@ def _by_sphere(shape: SpatialShape, ball: Sphere3D) -> Sequence[SpatialPair]:
     return ((shape, ball),)
 
 
-def contact_in_space(
-    name: str, a: SpatialShape, other: SpatialShape | SpatialPart, law: ContactLaw, friction: Friction | None,
-    turning: TurningFriction | None,
-) -> Contact3D:  # fmt: skip
-    """The contact of a pair that `open_contacts` found."""
-    more: Any = {"name": name, "law": law, "friction": friction, "turning": turning}
+def contact_in_space(a: SpatialShape, other: SpatialShape | SpatialPart, more: dict[str, Any]) -> Contact3D:
+    """The contact of a pair that `open_contacts` found; `more` are the fields that those of all pairs have."""
+    name, law = more["name"], more["law"]
     if isinstance(other, MeshPart) and isinstance(a, Sphere3D):
         return SphereOnMesh3D(mesh=other.mesh, part=other.part, rounding=other.rounding, sphere=a, **more)
     if isinstance(other, EdgesPart) and isinstance(a, Box3D | ConvexPolyhedron3D | Capsule3D):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
-from ..model.base import Name, Vector3
+from ..model.base import Name, Positive, Vector3
 from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.markers import Marker, Marker2D, Marker3D
@@ -250,6 +250,10 @@ class Element(OpenRecord):
 
 class JointElement(Element):
     """Base of what may stand in a model's `joints`: a user's own needs no more than to inherit from it."""
+
+    compliance: Positive = 1.0
+    """How far it gives way under a load over how far others do, dimensionless: where joints repeat each other, they
+    share forces and moments in that measure."""
 
     def force_rows(self) -> Sequence[int]:
         """Which of its constraint rows have the force between its bodies as their multipliers, by components along

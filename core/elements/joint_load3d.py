@@ -32,7 +32,7 @@ def joint_load(row: Any, places: Any, numbers: Any, out: Any) -> None:
 class JointLoad(Derived):
     """Force (N) and torque (N m) of a joint on its body b at the point of marker b, along the axes of marker a.
 
-    Joints that repeat each other share their loads as equally compliant ones do (`assembly/joint_compliance.py`).
+    Joints that repeat each other share their loads as compliant ones do (`assembly/joint_compliance.py`).
     """
 
     kernel = joint_load

@@ -1,5 +1,6 @@
 """What the touching constraint contacts do at an instant: impacts first, then which of them stay, stick or slide."""
 
+import math
 from typing import Any
 
 from ..assembly.levels import rate_size
@@ -10,6 +11,7 @@ from ..contact_solvers.complementarity import MANY
 from ..rounding import DIRECTION_RANK, UNSOLVED
 from ..state.modes import IMPULSE_JUMP, LOSS_JUMP, MEMORY_SIZE, OPEN
 from ..state.run_records import CLOCK_SIZE, CROWDED
+from ..state.workspace_records import building_at
 from .active_set import LOOSEST_RANK, RANK_OF_MANY
 from .closing import choose
 from .impact import impact
@@ -19,6 +21,7 @@ from .records import (
     ACCELERATIONS,
     ALONE,
     COUNT,
+    FIRMNESS,
     FIRST,
     FLAG,
     KINETIC,
@@ -65,8 +68,10 @@ def decide(ev: Any, dr: Any, ws: Any, ms: Any, lc: Any) -> int:
     count, contacts, accelerations = whole(ev)[COUNT], ivec(ev.contacts, ev.most), largest_acceleration(ws)
     crowded = vec(lc.clock, CLOCK_SIZE)[CROWDED] != 0.0
     friction, static = vec(dr.friction, ws.n_contacts), vec(ws.contact_sticking, ws.n_contacts)
+    compliance, rows = vec(building_at(ws.building).compliance, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
     for i in range(count):
         k = contacts[i]
+        col(ev, FIRMNESS)[i] = 1.0 / math.sqrt(compliance[rows[k]])
         col(ev, KINETIC)[i], col(ev, STATIC)[i] = friction[k], static[k]
         col(ev, RESTITUTION)[i] = vec(dr.restitution, ws.n_contacts)[k]
         col(ev, RESTS)[i] = col(ev, FIRST)[i] = col(ev, STOP_IMPULSE)[i] = col(ev, STOP_LOSS)[i] = 0.0

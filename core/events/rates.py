@@ -13,7 +13,20 @@ from ..contact_solvers.projections import motion_left, motion_of
 from ..rounding import FRICTION_GOOD, STICKS_STILL
 from .forces import cones_at
 from .pivot_in_plane import has_one_tangent, pivot_in_plane
-from .records import COS_WAY, COUNT, LEFT_OVER, RATE, SIN_WAY, SLIDE_RATE, SWAY_RATE, TURNS, UNSHARED, col, whole
+from .records import (
+    COS_WAY,
+    COUNT,
+    FIRMNESS,
+    LEFT_OVER,
+    RATE,
+    SIN_WAY,
+    SLIDE_RATE,
+    SWAY_RATE,
+    TURNS,
+    UNSHARED,
+    col,
+    whole,
+)
 
 
 @internal
@@ -132,8 +145,10 @@ def solve_cone_problem(ev: Any, a: Any, count: int, part: Any, b: Any, mu: Any, 
 
 @internal
 def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
-    """`solve_cone_problem` of the first n contacts in `some`."""
-    some = ivec(ev.some, 3 * ev.most)
+    """`solve_cone_problem` of the first n contacts in `some`. With the compliances C of the contacts, the same for
+    normal and tangents of each, it is the problem of equally compliant ones for C^1/2 P, C^-1/2 A C^-1/2 and C^-1/2 b:
+    friction cones stay what they are."""
+    some, firmness = ivec(ev.some, 3 * ev.most), col(ev, FIRMNESS)
     # room: matrix, motion, coefficients, forces, directions
     own = mat(ev.space_room, 3 * n, 3 * n)
     room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
@@ -141,19 +156,23 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
     own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
     way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 2, n)
     for i in range(n):
-        p_i = some[i]
-        own_mu[i], own_base[i], own_known[i] = mu[p_i], base[p_i], known[p_i]
+        p_i, firm = some[i], firmness[some[i]]
+        own_mu[i], own_base[i], own_known[i] = mu[p_i], base[p_i] / firm, known[p_i]
         way[0, i], way[1, i] = col(ev, COS_WAY)[p_i], col(ev, SIN_WAY)[p_i]
         for block in range(3):
-            own_b[block * n + i] = b[block * count + p_i]
+            own_b[block * n + i] = firm * b[block * count + p_i]
             for j in range(n):
+                both = firm * firmness[some[j]]
                 for other in range(3):
-                    own[block * n + i, other * n + j] = a[block * count + p_i, other * count + some[j]]
+                    own[block * n + i, other * n + j] = both * a[block * count + p_i, other * count + some[j]]
     if not _recalled(ev, n) and not _solve_in_room(ev, n, some[0]):
         return False
     for i in range(n):
+        p_i = some[i]
         for block in range(3):
-            p[block * count + some[i]] = own_p[block * n + i]
+            p[block * count + p_i] = firmness[p_i] * own_p[block * n + i]
+        # less than the least by rounding would pull in the next problem
+        p[p_i] = max(p[p_i], base[p_i])
     return True
 
 

@@ -55,6 +55,8 @@ class ContactProblem:
     without: np.ndarray
     """Accelerations of the bodies without contact forces, (bodies * 6,)."""
     bodies: list[str]
+    compliance: np.ndarray
+    """C, (contacts,): of the normal and the tangents of each."""
 
     def motion(self, forces: np.ndarray) -> dict[str, np.ndarray]:
         """Acceleration (6,) of each body, translation and rotation, for contact forces (contacts, 3)."""
@@ -155,9 +157,11 @@ def contact_problem(model) -> ContactProblem:
     right[:n, :-1], right[:n, -1], right[n:, -1] = held.T, force, -rates
     found = solve(system, right)[:n]
     matrix = held @ found[:, :-1]
+    given = {contact.name: contact.compliance for contact in model.contacts}
     return ContactProblem(
         names, 0.5 * (matrix + matrix.T), held @ found[:, -1] + drift, np.array(static, REAL), np.array(kinetic, REAL),
         np.array(ways, REAL), 1 if planar else 2, found[:, :-1], found[:, -1], [body.name for body in model.bodies],
+        np.array([given[name] for name in names], REAL),
     )  # fmt: skip
 
 

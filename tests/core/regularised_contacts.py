@@ -1,8 +1,9 @@
-"""Forces of equally compliant contacts with Coulomb friction, by semismooth Newton steps in 80-bit numbers.
+"""Forces of compliant contacts with Coulomb friction, by semismooth Newton steps in 80-bit numbers.
 
-w = b + (A + eps I) P, 0 <= w_n, 0 <= P_n, w_n P_n = 0; at rest |P_t| <= mu P_n with w_t = 0 within the cone and w_t
-against P_t at its limit (Alart and Curnier 1991); of contacts that slide P_t = -mu P_n d. The compliance eps decreases
-along a path on which each solution begins from the last one. It is a part of the largest inverse mass.
+w = b + (A + eps C) P, C the relative compliances, 0 <= w_n, 0 <= P_n, w_n P_n = 0; at rest |P_t| <= mu P_n with
+w_t = 0 within the cone and w_t against P_t at its limit (Alart and Curnier 1991); of contacts that slide
+P_t = -mu P_n d. The compliance eps decreases along a path on which each solution begins from the last one. It is a part
+of the largest inverse mass.
 """
 
 from dataclasses import dataclass, replace
@@ -45,7 +46,7 @@ class Forces:
 def _local(problem: ContactProblem, eps: REAL, p, mu) -> tuple[np.ndarray, np.ndarray]:
     """Residual of the laws of all contacts and its generalized Jacobian."""
     n = len(problem.names)
-    stiff = problem.matrix + eps * np.eye(3 * n, dtype=REAL)
+    stiff = problem.matrix + eps * np.diag(np.repeat(problem.compliance, 3))
     w = problem.free + stiff @ p
     residual, jacobian = np.zeros(3 * n, REAL), np.zeros((3 * n, 3 * n), REAL)
     unit = np.eye(3 * n, dtype=REAL)

@@ -43,6 +43,10 @@ def test_the_page_on_load_sharing_runs() -> None:
     stops = 0.02 * 10.0 / (0.3 * 9.81 * 0.125)
     assert max(event.t for event in result.events if event.kind == "stick") == pytest.approx(stops, rel=1e-4)
     hung, weight = names["hung"], 20.0 * 9.81
+    friction = [abs(names["held"][f"{name}.friction_force"][-1]) for name in ("steel", "rubber")]
+    assert friction == pytest.approx([4.5, 1.5], rel=1e-8)
+    shares = [names["hinged"][f"{name}.force_z"][-1] for name in ("low", "high")]
+    assert shares == pytest.approx([0.75 * weight, 0.25 * weight], rel=1e-9)
     assert [hung[f"hinge{i}.force_z"][-1] for i in range(2)] == pytest.approx([0.5 * weight] * 2, rel=1e-9)
     moments = sum(hung[f"hinge{i}.torque_y"][-1] + (-0.7, 0.7)[i] * hung[f"hinge{i}.force_x"][-1] for i in range(2))
     assert abs(moments) == pytest.approx(0.4 * weight, rel=1e-9)

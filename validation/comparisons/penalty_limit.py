@@ -168,7 +168,8 @@ def with_stiffness(model: Model, stiffness: float) -> Model:
                     "contact persists and a penalty force rings in it, so there is no limit to compare with"
                 )
             law = Gonthier(stiffness=stiffness, restitution=law.restitution, exponent=EXPONENT)
-        contacts.append(contact.model_copy(update={"law": law}))
+        # a force has no relative compliance
+        contacts.append(contact.model_copy(update={"law": law, "compliance": 1.0}))
     # a restitution is no parameter of every law; the copy is for exudyn only
     return model.model_copy(update={"contacts": tuple(contacts), "parameters": ()})
 

@@ -229,7 +229,7 @@ def with_time(model: Model, scales: dict[str, Scale], time: float, rate: float) 
         update: dict[str, Any] = {}
         if isinstance(contact.law, ImpactLaw):
             scale = scales[contact.name]
-            update["law"] = _law(contact.law.restitution, scale, time, rate)
+            update["law"], update["compliance"] = _law(contact.law.restitution, scale, time, rate), 1.0
             if isinstance(contact.friction, CoulombFriction):
                 mu, static = contact.friction.coefficient, contact.friction.sticking_coefficient
                 spring, damper = scale.mass / time**2, 2.0 * scale.mass / time
