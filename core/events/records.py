@@ -89,8 +89,9 @@ instant_at = record_view(INSTANT_TYPE)
     ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
     NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
     LEFT_OVER,                         # 1: of a part of the mechanism whose problem is still to be solved
-) = range(73)  # fmt: skip
-COLUMNS = 73
+    COMPANION,                         # how far on the contact stands that shares its friction (`three_tangents.py`)
+) = range(74)  # fmt: skip
+COLUMNS = 74
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK = range(5)
