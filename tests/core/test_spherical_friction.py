@@ -57,7 +57,7 @@ def along_axes(torque: Any) -> dict[str, Any]:
     return {name: Constant(value=x) if isinstance(x, float | int) else x for name, x in fields}
 
 
-def ball(spin: Any, torque: Any, inertia: Any = (INERTIA,) * 3, turn: Any = (0, 0, 0), **friction: Any) -> Model:
+def ball(spin: Any, loads: Any, inertia: Any = (INERTIA,) * 3, turn: Any = (0, 0, 0), **friction: Any) -> Model:
     """A body on a spherical joint in its centre of mass, with a spin and a torque (three signals or numbers), all of it
     turned by `turn`."""
     rotation = Rotation.from_rotvec(turn)
@@ -69,7 +69,7 @@ def ball(spin: Any, torque: Any, inertia: Any = (INERTIA,) * 3, turn: Any = (0, 
     # (the marker's axes begin as those of the model that is not turned; the ball stays or its load turns with it)
     load = AppliedTorque3D(
         name="load", marker=Marker3D(body="ball"), follower=True,
-        **along_axes(torque),
+        **along_axes(loads),
     )  # fmt: skip
     rub = SphericalFriction3D(name="rub", **ends, **friction)
     return Model(bodies=[body], joints=[Spherical3D(name="joint", **ends)], forces=[load, rub], gravity=(0, 0, 0))
@@ -154,14 +154,14 @@ def test_it_is_the_same_in_any_frame() -> None:
 
 
 def test_energy_is_kept_where_the_direction_turns() -> None:
-    """Unequal inertias: the axis of turning turns, and the torque is against it."""
-    result = simulate(ball((4.0, 0.2, 0.1), (0, 0, 0), (0.5, 0.3, 0.2), torque=0.2), 8.0, rtol=1e-9, atol=1e-11)
+    """About the middle axis of inertia the ball tumbles, and the torque is against its turning all the time."""
+    result = simulate(ball((0.1, 4.0, 0.1), (0, 0, 0), (0.5, 0.3, 0.2), torque=0.2), 8.0, rtol=1e-9, atol=1e-11)
     assert np.max(np.abs(result["energy.balance"])) < 1e-7
     w, moving = spin_of(result), result["rub.sliding_velocity"] > 1e-3
     size = np.linalg.norm(w[moving], axis=1)
     assert torque_of(result)[moving] == pytest.approx(-0.2 * w[moving] / size[:, None], abs=1e-6)
     cosines = w[moving] @ w[0] / np.linalg.norm(w[0]) / size
-    assert np.min(cosines) < 0.9
+    assert np.min(cosines) < 0.95
 
 
 MASS, ARM, CENTRAL, MU, RADIUS = 2.0, 0.5, 0.06, 0.3, 0.05
@@ -205,9 +205,10 @@ def test_a_pendulum_in_a_plane_is_that_on_a_hinge(method: str, friction: dict[st
 def test_units_do_not_matter() -> None:
     """In mm and g."""
     of: dict[str, Any] = {"joint": "bearing", "coefficient": MU}
-    usual = simulate(pendulum(True, torque=0.1, radius=RADIUS, **of), 4.0)
-    other = simulate(pendulum(True, 1e-3, 1e-3, torque=0.1e9, radius=1e3 * RADIUS, **of), 4.0)
-    assert other["bar.x"][-1] == pytest.approx(1e3 * usual["bar.x"][-1], rel=1e-9)
+    tight: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
+    usual = simulate(pendulum(True, torque=0.1, radius=RADIUS, **of), 4.0, **tight)
+    other = simulate(pendulum(True, 1e-3, 1e-3, torque=0.1e9, radius=1e3 * RADIUS, **of), 4.0, **tight)
+    assert other["bar.x"][-1] == pytest.approx(1e3 * usual["bar.x"][-1], rel=1e-8)
     assert other["rub.friction_torque"][-1] == pytest.approx(1e9 * usual["rub.friction_torque"][-1], rel=1e-8)
 
 
@@ -314,11 +315,11 @@ def test_a_restored_run_goes_on_to_the_same_bytes(t: float) -> None:
     sim.advance(t)
     other.advance(0.3 * t)
     other.restore(State.from_bytes(sim.state().to_bytes()))
-    known = len(sim.events)
+    known, before = len(sim.events), len(other.events)
     for run in (sim, other):
         run.advance(2.5)
     assert other.state().deciding_bytes() == sim.state().deciding_bytes()
-    assert other.events == sim.events[known:]
+    assert other.events[before:] == sim.events[known:]
 
 
 def test_a_blow_finds_no_friction_of_the_joint() -> None:
