@@ -11,7 +11,7 @@ from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..model.rotation3d import dot
-from ..rounding import REACHES_LIMIT_NOW, TURNS
+from ..rounding import IMMOVABLE, REACHES_LIMIT_NOW, TURNS
 from ..state.modes import AT_LIMIT, IDLE, OF_FIRST, OF_NORMAL, OF_SECOND
 from ..state.modes import STICKS as STUCK
 from .forces import independent_of
@@ -147,12 +147,24 @@ def _list_at_limit(ev: Any, slides: float, total: int) -> int:
 
 
 @internal
+def _least_mass(ev: Any, row: int) -> float:
+    """Of a row that is turned with three tangents what rounding may make of none, in parts of what these have."""
+    count, total = whole(ev)[COUNT], 0.0
+    own, a = first_of(ev, row % count), masses(ev, count)
+    if col(ev, COMPANION)[own] == 0.0 or row < count:
+        return 0.0
+    for k in (count + own, 2 * count + own, count + own + 1):
+        total += a[k, k]
+    return IMMOVABLE * total
+
+
+@internal
 def _drop_immovable(ev: Any, total: int) -> int:
     """Keep those of the first `total` rows in `some` that have an inverse mass; how many. A tangent that joints hold
     has none, and rounding must not say that it has."""
     some, moving = ivec(ev.some, 3 * ev.most), 0
     for j in range(total):
-        if inverse_mass(ev, some[j]) > 0.0:
+        if inverse_mass(ev, some[j]) > _least_mass(ev, some[j]):
             some[moving] = some[j]
             moving += 1
     return moving
