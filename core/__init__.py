@@ -113,6 +113,7 @@ if TYPE_CHECKING:
         SlideFriction3D,
         SlideSpring2D,
         Spherical3D,
+        SphericalFriction3D,
         SpringDamper2D,
         SpringDamper3D,
         TableSpring2D,
@@ -363,6 +364,7 @@ __all__ = [
     "SphereOnSmooth3D",
     "SphereOnSphere3D",
     "Spherical3D",
+    "SphericalFriction3D",
     "SpringDamper2D",
     "SpringDamper3D",
     "State",
@@ -424,8 +426,8 @@ __getattr__, __dir__ = late_names(
             "RelationTerm RelativeLoad2D RelativeLoad3D RelativeMotor2D Revolute2D Revolute3D RevoluteFriction2D "
             "RevoluteFriction3D RevoluteSpherical3D RigidBody2D RigidBody3D RollingDisk3D RollingSphere3D "
             "ScalarForce2D ScalarJoint2D Screw3D Servo2D Servo3D SlideFriction2D SlideFriction3D SlideSpring2D "
-            "Spherical3D SpringDamper2D SpringDamper3D TableSpring2D TableSpring3D TorsionSpring2D TorsionSpring3D "
-            "Universal3D scalar_constraint scalar_force"
+            "Spherical3D SphericalFriction3D SpringDamper2D SpringDamper3D TableSpring2D TableSpring3D TorsionSpring2D "
+            "TorsionSpring3D Universal3D scalar_constraint scalar_force"
         ),
         ".equations.errors": "EquationError",
         ".equations.system": "EquationSystem GapContact",

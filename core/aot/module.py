@@ -154,7 +154,8 @@ _SELDOM = tuple(
     for module in (
         "analysis", "assembly.building", "assembly.entries", "assembly.matrix_state", "assembly.partition_building",
         "assembly.structure_tables", "contact_solvers", "contacts.bristle2d", "contacts.bristle3d",
-        "contacts.scalar_contact2d", "elements.measure3d", "elements.pid_controller2d",
+        "contacts.scalar_contact2d", "contacts.spherical_friction3d", "elements.measure3d", "elements.pid_controller2d",
+        "elements.spherical_friction3d",
         "event_detection.contact_evaluation", "event_detection.joint_loads", "event_detection.repivoting", "events",
         "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice", "methods.frames",
         "recovery", "simulation", "stage.corotating", "stage.jfnk", "stage.simple", "time_loop.time_stepping",

@@ -71,6 +71,8 @@ class ContactInfo:
     """Sliding distance in the tables by a unit of that in `units`."""
     has_shapes: bool = True
     """False: the friction of a joint, whose gap and normal force mean nothing."""
+    companion: int = 0
+    """How far on the contact stands with which it has three tangents together; 0: there is none."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -318,6 +320,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 units=c.units_in(numbering.bodies),
                 size=c.size_in(numbering.length),
                 has_shapes=c.has_shapes,
+                companion=c.companion,
             )
             for c in contacts
         ],

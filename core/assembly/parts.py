@@ -50,15 +50,19 @@ class TabulatedElements:
         more: list[ContactElement] = []
         for element in parts.elements():
             if isinstance(element, JointFrictionForce) and element.is_contact:
-                more.append(_contact_of(element))
+                more += _contacts_of(element)
             elif not isinstance(element, ContactElement):
                 others.append(element)
         self.contacts: tuple[ContactElement, ...] = (*parts.contacts, *more)
         self.all: tuple[Element, ...] = (*others, *self.contacts)
 
 
-def _contact_of(friction: JointFrictionForce) -> ContactElement:
+def _contacts_of(friction: JointFrictionForce) -> Sequence[ContactElement]:
     # few models have any, and kernels take time to import
+    if friction.is_spherical:
+        from ..contacts.spherical_friction3d import contacts_of
+
+        return contacts_of(friction)
     from ..contacts.joint_friction import contact_of
 
-    return contact_of(friction)
+    return (contact_of(friction),)

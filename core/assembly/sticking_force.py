@@ -8,7 +8,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import IMPLIED_MOVES, IMPLIED_SLIDES, IMPLIED_TURNS, TURNS
-from ..state.modes import AT_LIMIT, CLOSED, IMPLIED, MEMORY_SIZE, MODE, OF_NORMAL, RATIO, SLIDE, STICKS
+from ..state.modes import AT_LIMIT, CLOSED, IMPLIED, LEAN, MEMORY_SIZE, MODE, OF_NORMAL, RATIO, SLIDE, STICKS, WAY
 from .levels import acceleration_level, position_level, rate_size
 
 
@@ -63,6 +63,9 @@ def friction_limit(ws: Any, k: int, force: float) -> float:
 def held_friction(ws: Any, k: int, lam: Any) -> float:
     """Size of the friction of contact k, which sticks, N, from multipliers `lam` (m_ext,); on a patch that of forces
     and torque on the ellipsoid, the torque at its present part of the full one (`contacts/patch3d.py`)."""
+    companion = ivec(ws.contact_companion, ws.n_contacts)[k]
+    if companion != 0:
+        return _held_by_three(ws, k if companion > 0 else k - 1, lam)
     row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
     if in_space(ws, k):
         memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
@@ -72,3 +75,26 @@ def held_friction(ws: Any, k: int, lam: Any) -> float:
         drills = part * vec(ws.contact_sticking, ws.n_contacts)[k] * normal
         return math.sqrt(lam[row] * lam[row] + across * across + drills * drills)
     return abs(lam[row])
+
+
+@internal
+def _held_by_three(ws: Any, k: int, lam: Any) -> float:
+    """The same of contact k and the next one, which have three tangents together."""
+    slides, memory = ivec(ws.contact_slide_rows, ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
+    normal, third = lam[ivec(ws.contact_rows, ws.n_contacts)[k]], lam[slides[k + 1]]
+    second = lam[slides[k] + 1] if memory[SLIDE] == STICKS else memory[RATIO] * normal
+    return math.sqrt(lam[slides[k]] * lam[slides[k]] + second * second + third * third)
+
+
+@internal
+def torque_of_three(ws: Any, k: int) -> Any:
+    """Friction of contact k and the next one, which have three tangents together, along the axes of space, N, as their
+    residuals have been evaluated last (`contacts/spherical_friction3d.py`)."""
+    n, monitor = ws.n_contacts, vec(ws.monitor, 3 * ws.n_contacts)
+    memory = mat(ws.memory, n, MEMORY_SIZE)[k]
+    if memory[MODE] != CLOSED:
+        return 0.0, 0.0, 0.0
+    c, s, level, up = math.cos(memory[WAY]), math.sin(memory[WAY]), math.cos(memory[LEAN]), math.sin(memory[LEAN])
+    one, two, three = monitor[n + k], monitor[2 * n + k], monitor[n + k + 1]
+    across, third = level * two - up * three, up * two + level * three
+    return c * one - s * across, s * one + c * across, third

@@ -77,13 +77,15 @@ def want(ws: Any) -> None:
     """Ask for the structure of the contacts' present modes."""
     wanted, memory = ivec(ws.wanted, ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
     slides, seconds = ivec(ws.contact_slide_rows, ws.n_contacts), ivec(ws.contact_second_rows, ws.n_contacts)
+    companion = ivec(ws.contact_companion, ws.n_contacts)
     for k in range(ws.n_contacts):
         mode = memory[k, MODE]
         wanted[k] = ENGAGED if mode == ACTIVE else APART
         if mode == CLOSED:
             wanted[k] = HELD
             if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
-                wanted[k] = STUCK if seconds[k] < 0 else STUCK_TWICE
+                # (a companion's second tangent does not move)
+                wanted[k] = STUCK if seconds[k] < 0 or companion[k] < 0 else STUCK_TWICE
             elif memory[k, SLIDE] == AT_LIMIT:
                 wanted[k] = STUCK
             wanted[k] += KINDS * np.int64(memory[k, IMPLIED])

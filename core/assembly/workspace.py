@@ -49,7 +49,7 @@ _SHARED = (
 
 _OF_NOW = (*OF_STRUCTURE, *OF_PARTITION)
 """Arrays of the present structure and partition."""
-_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows")
+_NEVER_CHANGES = (*_OF_NOW, "kernels", "contact_rows", "contact_slide_rows", "contact_second_rows", "contact_companion")
 """Arrays that runs may share: others take their place, but nobody writes into them."""
 
 _OF_BUILDING = ("left_out", "units", "compliance", "mechanism")
@@ -118,6 +118,7 @@ class Workspace:
             "contact_rows": np.array([c.row for c in a.contacts], dtype=np.int64),
             "contact_slide_rows": np.array([c.slide_row for c in a.contacts], dtype=np.int64),
             "contact_second_rows": np.array([c.second_row for c in a.contacts], dtype=np.int64),
+            "contact_companion": np.array([c.companion for c in a.contacts], dtype=np.int64),
             "contact_sticking": sticking(a),
             "contact_release": np.array([release(c.law) for c in a.contacts], dtype=np.int64),
             "sleeping": np.zeros(max(contacts, 1), dtype=np.int64),

@@ -15,6 +15,8 @@ nothing changes (Jourdan, Alart, Jean 1998). What these do not find is followed 
 import math
 from typing import Any
 
+import numpy as np
+
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
 from ..linalg.single_rows import take_single_rows
@@ -30,6 +32,7 @@ from ..rounding import (
     FRICTION_SOLVED,
 )
 from .continuation import EARLIER, FINER, FIRST, MOST_LENGTH, TIMES, follow_cones, giving_way_size
+from .patch_friction import solve_ball
 from .projections import motion_left, motion_of, residual_of_cones
 from .single_contact import solve_single_contact
 
@@ -39,12 +42,46 @@ NEWTON, HALVINGS = 60, 8
 FOLLOWED_AFTER = 60
 """Sweeps, after which the path is tried once before more of them."""
 LEAST_PART = 0.125
+BALL_TURNS, BALL_STICKS = 3, 1e-9
+"""How often, and in what part of the inverse masses, friction with three tangents brakes what is to stick."""
 
 
 def friction_cones_size(n: int) -> int:
     """Numbers (of 8 bytes) in the scratch of `solve_friction_cones` for n contacts."""
     m = 3 * n
     return m + max(m * m + 6 * m + least_norm_size(m, m, 1), giving_way_size(n))
+
+
+@internal
+def solve_three_tangents(n: int, a: Any, b: Any, p: Any, i: int, limit: float, part: float) -> float:
+    """Friction along the tangents of contact i and the first one of the next, in a ball of radius `limit`, which goes
+    `part` of its way; how far it would go."""
+    rows, own, motion, found = (n + i, 2 * n + i, n + i + 1), np.zeros((4, 4)), np.zeros(4), np.zeros(4)
+    own[0, 0] = 1.0
+    for k in range(3):
+        motion[1 + k] = motion_of(a, b, p, rows[k])
+        for l in range(3):
+            own[1 + k, 1 + l] = a[rows[k], rows[l]]
+            motion[1 + k] -= own[1 + k, 1 + l] * p[rows[l]]
+    step = np.zeros(4)
+    for _ in range(BALL_TURNS):
+        # what it leaves of the motion is stopped too
+        sticks = solve_ball(own, motion, 1.0, limit, BALL_STICKS, step)
+        size = 0.0
+        for k in range(1, 4):
+            found[k] += step[k]
+            size += found[k] * found[k]
+        if not sticks or size > limit * limit:
+            break
+        for k in range(1, 4):
+            for l in range(1, 4):
+                motion[k] += own[k, l] * step[l]
+    change = 0.0
+    for k in range(3):
+        more = found[1 + k] - p[rows[k]]
+        change = max(change, abs(more))
+        p[rows[k]] += part * more
+    return change
 
 
 @internal
@@ -65,6 +102,13 @@ def sweep_over_cones(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way
                 return False, 0.0, 0.0
             p[i] = max(base[i], -rest_n / grows)
             p[j], p[k] = -mu[i] * p[i] * way[0, i], -mu[i] * p[i] * way[1, i]
+        elif way[2, i] != 0.0:
+            # (a given load: no tangent moves its normal)
+            p[i] = max(base[i], -rest_n / own[0])
+            if way[2, i] > 0.0:
+                change = max(change, solve_three_tangents(n, a, b, p, i, mu[i] * p[i], part))
+            largest = max(largest, p[i])
+            continue
         else:
             found, p[i], p[j], p[k] = solve_single_contact(own, (rest_n, rest_1, rest_2), mu[i], base[i])
             if not found:
@@ -157,7 +201,8 @@ def solve_friction_cones(
     a, b : inverse masses (3 n, 3 n) and motion without forces (3 n,), in the same order; where normal forces come with
         torques, a is not symmetric.
     mu, base : coefficients and least normal forces (n,).
-    known, way : where not 0, the contact slides along the direction `way` (2, n).
+    known, way : where not 0, the contact slides along the direction `way` (3, n), whose third row says how far on the
+        contact stands that has the third tangent of the same friction, or the first two: 1 or -1; 0: none.
     work : address of `friction_cones_size` numbers.
     most : sweeps, MOST_SWEEPS unless there is another way to the forces.
     """

@@ -51,20 +51,22 @@ def _braked(a: Any, b: Any, base: float, brake: float, p: Any) -> Any:
 def one_patch(a: Any, b: Any, mu: float, base: float, p: Any) -> None:
     """Impulses p (4,) of one contact: normal, both tangents, zeta; a (4, 4), b (4,): inverse masses, 1/kg, and the
     motion without them, m/s. None along what cannot move: a driven spin goes on, and is counted in w."""
-    _solve_patch(a, b, mu, base, p)
+    solve_ball(a, b, mu, base, STICKS, p)
     for k in range(1, 4):
         p[k] = p[k] if a[k, k] > 0.0 else 0.0
 
 
 @internal
-def _solve_patch(a: Any, b: Any, mu: float, base: float, p: Any) -> None:
+def solve_ball(a: Any, b: Any, mu: float, base: float, sticks: float, p: Any) -> bool:
+    """The same, with what stands along all that cannot move; True if it sticks, where `sticks` is what brakes it in
+    parts of the inverse masses."""
     p[0], p[1], p[2], p[3] = max(base, -b[0] / a[0, 0]), 0.0, 0.0, 0.0
     size = a[1, 1] + a[2, 2] + a[3, 3]
     if mu == 0.0 or size == 0.0 or (base == 0.0 and b[0] >= 0.0):
-        return
-    friction, normal = _braked(a, b, base, 1.0 / (STICKS * size), p)
+        return False
+    friction, normal = _braked(a, b, base, 1.0 / (sticks * size), p)
     if friction <= mu * normal:
-        return
+        return True
     # in parts of what is braked: 0 free, 1 sticks
     low, high, of_low, of_high, side = 0.0, 1.0, -mu * max(base, -b[0] / a[0, 0]), friction - mu * normal, 0
     for _ in range(MOST_TRIALS):
@@ -81,6 +83,7 @@ def _solve_patch(a: Any, b: Any, mu: float, base: float, p: Any) -> None:
         else:
             high, of_high, of_low = x, off, 0.5 * of_low if side > 0 else of_low
             side = 1
+    return False
 
 
 @internal

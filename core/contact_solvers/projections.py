@@ -1,7 +1,8 @@
 """The conditions of friction cones as equations: forces are their own projections (Alart and Curnier 1991).
 
 P_N = max(base, P_N - w_N/a_NN); P_T = projection of P_T - w_T/a_TT on the disk mu P_N, or, where a direction of sliding
-is known, -mu P_N along it.
+is known, -mu P_N along it. Of friction with three tangents two contacts have a part each, and P_T of both together
+lies in the ball mu P_N; `way` (3, n) says with its third row how far on the other one stands, 0: there is none.
 """
 
 import math
@@ -16,6 +17,16 @@ def motion_of(a: Any, b: Any, p: Any, i: int) -> float:
     total = b[i]
     for j in range(len(b)):
         total += a[i, j] * p[j]
+    return total
+
+
+@internal
+def size_of_ball(n: int, a: Any, i: int, other: int) -> float:
+    """Sum of the inverse masses of the tangents of contact i and of the one that stands `other` further on."""
+    j, k = n + i, 2 * n + i
+    total = 0.0
+    for row in (j, k, j + other, k + other):
+        total += a[row, row]
     return total
 
 
@@ -42,10 +53,17 @@ def residual_of_cones(
             r[j], r[k] = p[j] + mu[i] * p[i] * way[0, i], p[k] + mu[i] * p[i] * way[1, i]
             jac[j, i], jac[k, i] = mu[i] * way[0, i], mu[i] * way[1, i]
         else:
+            other = int(way[2, i])
             size = a[j, j] + a[k, k]
+            if other != 0:
+                size = size_of_ball(n, a, i, other)
             step = 1.0 / size if size > 0.0 else 0.0
             x, y = p[j] - step * motion_of(a, b, p, j), p[k] - step * motion_of(a, b, p, k)
-            length, limit = math.sqrt(x * x + y * y), mu[i] * max(p[i], 0.0)
+            length, limit, x_2, y_2 = math.sqrt(x * x + y * y), mu[i] * max(p[i], 0.0), 0.0, 0.0
+            if other != 0:
+                x_2 = p[j + other] - step * motion_of(a, b, p, j + other)
+                y_2 = p[k + other] - step * motion_of(a, b, p, k + other)
+                length = math.sqrt(x * x + y * y + x_2 * x_2 + y_2 * y_2)
             if step == 0.0 or limit == 0.0:
                 r[j], r[k] = p[j], p[k]
             elif length <= limit:
@@ -59,6 +77,13 @@ def residual_of_cones(
                 for l in range(m):
                     d_x = (1.0 if l == j else 0.0) - step * a[j, l]
                     d_y = (1.0 if l == k else 0.0) - step * a[k, l]
+                    if other != 0:
+                        forward = c * d_x + s * d_y
+                        forward += x_2 / length * ((1.0 if l == j + other else 0.0) - step * a[j + other, l])
+                        forward += y_2 / length * ((1.0 if l == k + other else 0.0) - step * a[k + other, l])
+                        jac[j, l] -= part * (d_x - c * forward)
+                        jac[k, l] -= part * (d_y - s * forward)
+                        continue
                     turn = part * (c * d_y - s * d_x)
                     jac[j, l] += s * turn
                     jac[k, l] -= c * turn
@@ -77,7 +102,9 @@ def motion_left(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any
         largest = max(largest, abs(b[i]), abs(b[j]), abs(b[k]))
         trial = max(base[i], p[i] - motion_of(a, b, p, i) / a[i, i])
         worst = max(worst, a[i, i] * abs(p[i] - trial))
-        size, limit = a[j, j] + a[k, k], mu[i] * max(p[i], 0.0)
+        size, limit, other = a[j, j] + a[k, k], mu[i] * max(p[i], 0.0), int(way[2, i])
+        if other != 0:
+            size = size_of_ball(n, a, i, other)
         if size == 0.0:
             continue
         if known[i] != 0.0:
@@ -85,6 +112,10 @@ def motion_left(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any
         else:
             x, y = p[j] - motion_of(a, b, p, j) / size, p[k] - motion_of(a, b, p, k) / size
             length = math.sqrt(x * x + y * y)
+            if other != 0:
+                x_2 = p[j + other] - motion_of(a, b, p, j + other) / size
+                y_2 = p[k + other] - motion_of(a, b, p, k + other) / size
+                length = math.sqrt(x * x + y * y + x_2 * x_2 + y_2 * y_2)
             part = limit / length if length > limit else 1.0
             x, y = part * x, part * y
         worst = max(worst, size * abs(p[j] - x), size * abs(p[k] - y))

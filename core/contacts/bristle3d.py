@@ -24,6 +24,7 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of, shown,
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along as rate_along
 from ..elements.measure3d import AXES_A, COLUMNS
+from ..elements.relative_spin3d import add_torque
 from ..laws.friction.lugre import lugre_slip
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
@@ -39,7 +40,7 @@ from .sliding2d import FRICTION
 from .slip3d import add_slip, slip_of_batch, speed_rate_of_batch
 from .surface3d import pass_surface_in, put_in_along
 from .tangent3d import NORMAL, ROWS, U, W, column, product_with, put
-from .turning3d import add_torque, add_torque_tangent, resists_turning, turning_arms
+from .turning3d import add_torque_tangent, resists_turning, turning_arms
 
 BENT = 3
 """Components of a deflection, at most."""

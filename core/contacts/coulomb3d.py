@@ -26,6 +26,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_at
 from ..compiled.views import imat, ivec, mat, vec
 from ..elements.measure3d import COLUMNS
+from ..elements.relative_spin3d import add_torque, add_torque_by
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
@@ -42,8 +43,6 @@ from .tangent3d import NORMAL, U, W, column, product_with
 from .turning3d import (
     FRICTION_RADIUS,
     add_spin_tangent,
-    add_torque,
-    add_torque_by,
     add_torque_tangent,
     resists_turning,
     spin_changes,

@@ -20,6 +20,8 @@ class ContactElement(Element):
 
     has_shapes: ClassVar[bool] = True
     """False: the friction of a joint."""
+    companion: ClassVar[int] = 0
+    """How far on in the tables the contact stands with which it has three tangents together; 0: there is none."""
     surface_sign: ClassVar[float] = 1.0
     """-1 where the sliding distance in the plane grows against `surface_speed`, counter-clockwise round the shape."""
 

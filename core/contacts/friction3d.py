@@ -15,6 +15,7 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of, shown, shown_a
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import along as rate_along
 from ..elements.measure3d import COLUMNS
+from ..elements.relative_spin3d import add_torque
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
 from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
@@ -30,7 +31,6 @@ from .tangent3d import NORMAL, ROWS, U, W, column
 from .turning3d import (
     FRICTION_RADIUS,
     add_spin_tangent,
-    add_torque,
     add_torque_tangent,
     resists_turning,
     spin_changes,

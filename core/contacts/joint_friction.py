@@ -42,11 +42,12 @@ PLANAR, SPATIAL = 6, 14
 
 
 @internal
-def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
-    """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
-    par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
+def press(b: Any, job: int, e: int, own_rows: int, stop: int) -> None:
+    """What the load on the stop adds for `job`, whose place is the local coordinate `stop`; rows of the joint stand
+    behind the `own_rows`."""
+    par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, stop]
     lam, row, force = vec(b.lam, b.m_extended), imat(b.row, b.count, b.nrow)[e], 0.0
-    for k in range(OWN_ROWS, b.nrow):
+    for k in range(own_rows, b.nrow):
         force += lam[row[k]] ** 2
     force = math.sqrt(force)
     if job == RESIDUAL:
@@ -55,8 +56,15 @@ def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: An
         memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
         slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
         of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
-        for k in range(OWN_ROWS, b.nrow if memory[MODE] == CLOSED else OWN_ROWS):
-            values[of_rows[b.ncoord * k]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
+        for k in range(own_rows, b.nrow if memory[MODE] == CLOSED else own_rows):
+            values[of_rows[b.ncoord * k + stop]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
+
+
+@internal
+def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
+    """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
+    press(b, job, e, OWN_ROWS, 0)
+    par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
     gap, size = vec(b.q, b.n_extended)[w] * par[GAIN], par[SIZE]
     act_sliding(
         b, job, t, e, gap, np.full(1, par[GAIN]), vec(b.q, 0), size * s, size * tangent, size * hessian, size * period

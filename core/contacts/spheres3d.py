@@ -13,12 +13,11 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import AXES_A, POINT_A, POINT_B
-from ..model.rotation3d import along, constant, cross, dot, four, less, onto, plus, three, times, turns
+from ..model.rotation3d import along, constant, cross, dot, four, less, onto, plus, space_axes, three, times, turns
 from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
 from .moving_point3d import HOLLOW, on_plane
 from .normal2d import LAW_ADDRESS, evaluate_law
 from .normal3d import KIND, RADIUS_A, RADIUS_B, SIZE, pair_of
-from .tangent3d import space_axes
 
 ZERO = (0.0, 0.0, 0.0)
 

@@ -16,6 +16,7 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import (
+    add_lever,
     along,
     bend,
     constant,
@@ -25,6 +26,7 @@ from ..model.rotation3d import (
     less,
     onto,
     plus,
+    space_axes,
     three,
     times,
     turned,
@@ -36,17 +38,6 @@ from .normal3d import SIZE
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
 """Rows of the work matrix: W, U, and derivatives of the normal, of d, of beta_a and beta_b, and of s."""
 ROWS = 19
-
-
-@inlined
-def space_axes(p: Any) -> Any:
-    """E(p) = [-e, e0 I + e~] as its four columns: the angular velocity in space is 2 E p'."""
-    return (
-        (-p[1], -p[2], -p[3]),
-        (p[0], p[3], -p[2]),
-        (-p[3], p[0], p[1]),
-        (p[2], -p[1], p[0]),
-    )
 
 
 @inlined
@@ -139,24 +130,6 @@ def tangent_motion(
         work[GROWTH, j] = by_size
     u = plus(times(size, shift), less(cross(w_b, beta_b), cross(w_a, beta_a)))
     return n, u, beta_a, beta_b, size
-
-
-@inlined
-def add_lever(values: Any, slot: Any, first: int, factor: float, y: Any) -> None:
-    """values += factor d(E(p)^T y)/dp = factor [[0, -y^T], [y, y~]] in the Euler parameters from `first`."""
-    y0, y1, y2 = factor * y[0], factor * y[1], factor * y[2]
-    values[slot[first, first + 1]] -= y0
-    values[slot[first, first + 2]] -= y1
-    values[slot[first, first + 3]] -= y2
-    values[slot[first + 1, first]] += y0
-    values[slot[first + 2, first]] += y1
-    values[slot[first + 3, first]] += y2
-    values[slot[first + 1, first + 2]] -= y2
-    values[slot[first + 1, first + 3]] += y1
-    values[slot[first + 2, first + 1]] += y2
-    values[slot[first + 2, first + 3]] -= y0
-    values[slot[first + 3, first + 1]] -= y1
-    values[slot[first + 3, first + 2]] += y0
 
 
 @inlined

@@ -13,10 +13,11 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..model.rotation3d import along, dot, four, less, onto, plus, times
+from ..elements.relative_spin3d import relative_spin, spin_by_coordinate
+from ..model.rotation3d import add_lever, dot, four, less, onto, plus, space_axes, times
 from .normal3d import NUMBERS, SIZE
 from .support3d import SUPPORT_NUMBERS
-from .tangent3d import NORMAL, add_lever, column, space_axes
+from .tangent3d import NORMAL, column
 
 ROLLING = NUMBERS + SUPPORT_NUMBERS
 SPINNING, SLOW_TURNS, FRICTION_RADIUS = ROLLING + 1, ROLLING + 2, ROLLING + 3
@@ -31,13 +32,6 @@ def resists_turning(par: Any) -> bool:
 
 
 @internal
-def _spin(q: Any, v: Any, coord: Any, pair: Any) -> Any:
-    """w of the second body on the first."""
-    w_a = along(space_axes(four(q, coord, 3, pair[0])), four(v, coord, 3, 0.0))
-    return times(2.0, less(along(space_axes(four(q, coord, 10, pair[1])), four(v, coord, 10, 0.0)), w_a))
-
-
-@internal
 def _parts(par: Any, w: Any, n: Any) -> Any:
     """(w_n, w_T, sqrt(w_n^2 + w_s^2), sqrt(|w_T|^2 + w_s^2))."""
     w_n, slow = dot(n, w), par[SLOW_TURNS]
@@ -48,7 +42,7 @@ def _parts(par: Any, w: Any, n: Any) -> Any:
 @internal
 def turning_arms(b: Any, par: Any, coord: Any, pair: Any, n: Any) -> Any:
     """(m, m.w) at the current point of a batch."""
-    w = _spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)
+    w = relative_spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)
     w_n, w_t, of_n, of_t = _parts(par, w, n)
     m = plus(times(par[ROLLING] / of_t, w_t), times(par[SPINNING] * w_n / of_n, n))
     return m, dot(m, w)
@@ -59,14 +53,18 @@ def spin_on_patch(b: Any, par: Any, coord: Any, pair: Any, n: Any) -> float:
     """z at the current point of a batch."""
     if par[FRICTION_RADIUS] == 0.0:
         return 0.0
-    return float(par[FRICTION_RADIUS] * dot(n, _spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)))
+    w = relative_spin(vec(b.q, b.n_extended), vec(b.v, b.n_extended), coord, pair)
+    return float(par[FRICTION_RADIUS] * dot(n, w))
 
 
 @internal
 def spin_rate(b: Any, par: Any, coord: Any, pair: Any, n: Any, n_rate: Any) -> float:
     """z' at the current point of a batch; E(p') p' = 0."""
     q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
-    return float(par[FRICTION_RADIUS] * (dot(n, _spin(q, a, coord, pair)) + dot(n_rate, _spin(q, v, coord, pair))))
+    return float(
+        par[FRICTION_RADIUS]
+        * (dot(n, relative_spin(q, a, coord, pair)) + dot(n_rate, relative_spin(q, v, coord, pair)))
+    )
 
 
 @internal
@@ -76,21 +74,10 @@ def spin_changes(b: Any, par: Any, coord: Any, pair: Any, work: Any, n: Any, out
     c_q, c_v, r = vec(b.coef, 2)[0], vec(b.coef, 2)[1], par[FRICTION_RADIUS]
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
-    w = _spin(q, v, coord, pair)
+    w = relative_spin(q, v, coord, pair)
     for j in range(SIZE):
-        turn = _turns(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
+        turn = spin_by_coordinate(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
         out[j] = r * (dot(w, times(c_q, column(work, NORMAL, j))) + dot(n, turn))
-
-
-@internal
-def _turns(j: int, c_q: float, c_v: float, axes_a: Any, axes_b: Any, spin_a: Any, spin_b: Any) -> Any:
-    """Derivative of w by coordinate j and its velocity: E(p) b = -E(b) p."""
-    local = j % 7 - 3
-    if local < 0:
-        return (0.0, 0.0, 0.0)
-    if j < 7:
-        return less(times(2.0 * c_q, spin_a[local]), times(2.0 * c_v, axes_a[local]))
-    return less(times(2.0 * c_v, axes_b[local]), times(2.0 * c_q, spin_b[local]))
 
 
 @internal
@@ -110,19 +97,6 @@ def add_spin_tangent(b: Any, coord: Any, pair: Any, slot: Any, work: Any, n: Any
 
 
 @internal
-def add_torque(b: Any, coord: Any, pair: Any, torque: Any) -> None:
-    """A torque on the second body against the first, to the residual."""
-    r, q = vec(b.r, b.n_extended), vec(b.q, b.n_extended)
-    on_a, on_b = (
-        onto(space_axes(four(q, coord, 3, pair[0])), torque),
-        onto(space_axes(four(q, coord, 10, pair[1])), torque),
-    )
-    for i in range(4):
-        r[coord[3 + i]] += 2.0 * on_a[i]
-        r[coord[10 + i]] -= 2.0 * on_b[i]
-
-
-@internal
 def turning_gradient(q: Any, coord: Any, pair: Any, axis: Any, n: int, out: Any) -> None:
     """d(axis . w)/dv, to out (n,): w_a = 2 E(p_a) p_a'."""
     on_a, on_b = (
@@ -137,16 +111,6 @@ def turning_gradient(q: Any, coord: Any, pair: Any, axis: Any, n: int, out: Any)
 
 
 @internal
-def add_torque_by(b: Any, coord: Any, pair: Any, slot: Any, m: Any) -> None:
-    """values[slot[j]] += derivative of the residual by f, the torque being f m: slot (14,)."""
-    values, q = vec(b.values, b.n_values), vec(b.q, b.n_extended)
-    on_a, on_b = onto(space_axes(four(q, coord, 3, pair[0])), m), onto(space_axes(four(q, coord, 10, pair[1])), m)
-    for i in range(4):
-        values[slot[3 + i]] += 2.0 * on_a[i]
-        values[slot[10 + i]] -= 2.0 * on_b[i]
-
-
-@internal
 def add_torque_tangent(
     b: Any, par: Any, coord: Any, pair: Any, slot: Any, work: Any, n: Any, m: Any, force: float, changes: Any
 ) -> None:
@@ -156,11 +120,11 @@ def add_torque_tangent(
     c_q, c_v, slow = vec(b.coef, 2)[0], vec(b.coef, 2)[1], par[SLOW_TURNS]
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
-    w = _spin(q, v, coord, pair)
+    w = relative_spin(q, v, coord, pair)
     w_n, w_t, of_n, of_t = _parts(par, w, n)
     for j in range(SIZE):
         by_n = times(c_q, column(work, NORMAL, j))
-        change = _turns(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
+        change = spin_by_coordinate(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
         along_n = dot(change, n) + dot(w, by_n)
         across = less(change, plus(times(along_n, n), times(w_n, by_n)))
         turn = less(times(1.0 / of_t, across), times(dot(w_t, across) / of_t**3, w_t))

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from .servo3d import Servo3D
     from .slide_spring2d import SlideSpring2D
     from .spatial_body import PointMass3D, RigidBody3D, SpatialFrame
+    from .spherical_friction3d import SphericalFriction3D
     from .spring_damper2d import SpringDamper2D
     from .spring_damper3d import AxialSpring3D, SpringDamper3D, TorsionSpring3D
     from .table_spring2d import TableSpring2D
@@ -96,7 +97,7 @@ FORCES = LateClasses(
     "SpringDamper2D TableSpring2D TorsionSpring2D SlideSpring2D RevoluteFriction2D SlideFriction2D Bushing2D "
     "Servo2D RelativeLoad2D PIDController2D AppliedForce2D AppliedTorque2D CoordinateLoad AppliedForce3D "
     "AppliedTorque3D AxialSpring3D SpringDamper3D TorsionSpring3D Bushing3D TableSpring3D RevoluteFriction3D "
-    "SlideFriction3D Servo3D RelativeLoad3D PIDController3D",
+    "SlideFriction3D SphericalFriction3D Servo3D RelativeLoad3D PIDController3D",
 )
 
 Body = Annotated[BodyElement, OpenUnion(BODIES, BodyElement)]
@@ -192,6 +193,7 @@ __all__ = [
     "SlideSpring2D",
     "SpatialFrame",
     "Spherical3D",
+    "SphericalFriction3D",
     "SpringDamper2D",
     "SpringDamper3D",
     "TableSpring2D",
@@ -229,6 +231,7 @@ __getattr__, __dir__ = late_names(
         ".joint3d": "Joint3D",
         ".joint_friction2d": "RevoluteFriction2D SlideFriction2D",
         ".joint_friction3d": "RevoluteFriction3D SlideFriction3D",
+        ".spherical_friction3d": "SphericalFriction3D",
         ".joints3d": (
             "AngleDriver3D ConstantVelocity3D Cylindrical3D Distance3D Fixed3D Planar3D PointOnLine3D "
             "PointOnPlane3D PositionDriver3D Prismatic3D Revolute3D RevoluteSpherical3D Spherical3D Universal3D"

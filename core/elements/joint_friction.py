@@ -13,10 +13,11 @@ from .base import Element, Numbering, Part
 class JointFrictionForce(Element):
     """Base of the friction of joints. The tables have it as a contact where its law is Coulomb's.
 
-    Class attribute `measured`: what it works against.
+    Class attributes: `measured`, what it works against; `is_spherical`, whether that has three components.
     """
 
     measured: ClassVar[Literal["angle", "slide"]]
+    is_spherical: ClassVar[bool] = False
 
     joint: Name | None = None
     """The joint whose force presses on what rubs; none: nothing but a preload does."""

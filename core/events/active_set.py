@@ -10,7 +10,8 @@ from typing import Any
 from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..rounding import REACHES_LIMIT_NOW, TURNS
+from ..model.rotation3d import dot
+from ..rounding import IMMOVABLE, REACHES_LIMIT_NOW, TURNS
 from ..state.modes import AT_LIMIT, IDLE, OF_FIRST, OF_NORMAL, OF_SECOND
 from ..state.modes import STICKS as STUCK
 from .forces import independent_of
@@ -19,6 +20,7 @@ from .loaded import is_loaded
 from .rates import masses
 from .records import (
     CLOSES,
+    COMPANION,
     COS_WAY,
     COUNT,
     DIRECTION,
@@ -39,6 +41,7 @@ from .records import (
     real,
     whole,
 )
+from .three_tangents import axis_in_frame, first_of, size_of
 
 RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
 """Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
@@ -54,10 +57,25 @@ def _turn(ev: Any, ws: Any, back: bool) -> None:
             c, s = col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i]
             if col(ev, FLAG)[i] == 0.0 or col(ev, DIRECTION)[i] != 0.0:
                 continue
+            if col(ev, COMPANION)[i] != 0.0:
+                if col(ev, COMPANION)[i] > 0.0:
+                    _turn_three(ev, rows, count, i, n, back)
+                continue
             s = -s if back else s
             for j in range(n):
                 x, y = rows[count + i, j], rows[2 * count + i, j]
                 rows[count + i, j], rows[2 * count + i, j] = c * x + s * y, c * y - s * x
+
+
+@internal
+def _turn_three(ev: Any, rows: Any, count: int, i: int, n: int, back: bool) -> None:
+    """The same of contact i and its companion, of these rows."""
+    x, y, z = axis_in_frame(ev, i, 0), axis_in_frame(ev, i, 1), axis_in_frame(ev, i, 2)
+    if back:
+        x, y, z = (x[0], y[0], z[0]), (x[1], y[1], z[1]), (x[2], y[2], z[2])
+    for j in range(n):
+        was = rows[count + i, j], rows[2 * count + i, j], rows[count + i + 1, j]
+        rows[count + i, j], rows[2 * count + i, j], rows[count + i + 1, j] = dot(x, was), dot(y, was), dot(z, was)
 
 
 @internal
@@ -120,11 +138,24 @@ def _list_at_limit(ev: Any, slides: float, total: int) -> int:
     for i in range(count):
         at_limit = col(ev, FLAG)[i] != 0.0 and col(ev, NEW_SLIDE)[i] == AT_LIMIT
         if at_limit and col(ev, OTHER_FLAG)[i] == slides:
-            some[total] = 2 * count + i
-            total += 1
+            if col(ev, COMPANION)[i] >= 0.0:
+                some[total] = 2 * count + i
+                total += 1
             if slides != 0.0:
                 col(ev, NEW_SLIDE)[i] = STUCK
     return total
+
+
+@internal
+def _least_mass(ev: Any, row: int) -> float:
+    """Of a row that is turned with three tangents what rounding may make of none, in parts of what these have."""
+    count, total = whole(ev)[COUNT], 0.0
+    own, a = first_of(ev, row % count), masses(ev, count)
+    if col(ev, COMPANION)[own] == 0.0 or row < count:
+        return 0.0
+    for k in (count + own, 2 * count + own, count + own + 1):
+        total += a[k, k]
+    return IMMOVABLE * total
 
 
 @internal
@@ -133,7 +164,7 @@ def _drop_immovable(ev: Any, total: int) -> int:
     has none, and rounding must not say that it has."""
     some, moving = ivec(ev.some, 3 * ev.most), 0
     for j in range(total):
-        if inverse_mass(ev, some[j]) > 0.0:
+        if inverse_mass(ev, some[j]) > _least_mass(ev, some[j]):
             some[moving] = some[j]
             moving += 1
     return moving
@@ -145,7 +176,7 @@ def _say_at_limit(ev: Any, ws: Any, i: int, tied: bool) -> None:
     that has reached it is to hold the rest, for which it gets a margin."""
     plane, sticks = not in_space(ws, ivec(ev.contacts, ev.most)[i]), col(ev, NEW_SLIDE)[i] == STUCK
     if not sticks:
-        ratio = math.hypot(col(ev, F_T)[i], col(ev, F_S)[i]) / col(ev, F_N)[i]
+        ratio = size_of(ev, i, col(ev, F_T), col(ev, F_S)) / col(ev, F_N)[i]
         col(ev, NEW_SLIDE)[i] = IDLE if plane else AT_LIMIT
         col(ev, NEW_RATIO)[i] = (1.0 - TURNS) * ratio if tied else ratio
     if plane:
@@ -169,6 +200,8 @@ def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
     for i in range(count):
         flag[i] = 1.0 if col(ev, CLOSES)[i] != 0.0 else 0.0
     find_sliding(ev, list_held(ev, ws, flag, REACHES_LIMIT_NOW, full), full)
+    for i in range(count):
+        full[i] = full[first_of(ev, i)]
     normals = total = _list_closed(ev)
     for at_limit in range(2):
         for i in range(count):
@@ -197,6 +230,7 @@ def keep(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             implied[row % count] -= _bit(row // count)
         else:
             slide[row % count], tied = STUCK, True
+            slide[row % count + int(col(ev, COMPANION)[row % count])] = STUCK
     for i in range(count):
         rests = flag[i] != 0.0 and col(ev, STATIC)[i] != 0.0 and col(ev, DIRECTION)[i] == 0.0
         if rests and is_full(ev, i, REACHES_LIMIT_NOW):

@@ -1,6 +1,5 @@
 """Which of the touching contacts stay closed: those that press, and some that carry nothing."""
 
-import math
 from typing import Any
 
 from ..compiled.jit import internal
@@ -37,6 +36,7 @@ from .records import (
     real,
     whole,
 )
+from .three_tangents import size_of
 from .touching import free_jerks, looks_again
 
 CLOSES_FROM, CLOSES_TO = 3, 12
@@ -90,8 +90,7 @@ def _slide_unloaded(ev: Any, ws: Any, closes: Any) -> None:
         fastest = max(fastest, abs(col(ev, B_N)[i]), abs(col(ev, B_T)[i]), abs(col(ev, B_S)[i]))
     for i in range(whole(ev)[COUNT]):
         free = col(ev, STATIC)[i] > 0.0 and direction[i] == 0.0 and col(ev, F_N)[i] == 0.0
-        x, y = col(ev, W_T)[i], col(ev, W_S)[i]
-        speed = math.sqrt(x * x + y * y)
+        x, y, speed = col(ev, W_T)[i], col(ev, W_S)[i], size_of(ev, i, col(ev, W_T), col(ev, W_S))
         if free and closes[i] != 0.0 and speed > PRESSING * fastest:
             direction[i] = 1.0
             col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = x / speed, y / speed

@@ -1,6 +1,5 @@
 """Forces of the contacts at rest, by exact friction cones: those under which none pulls, and what friction holds."""
 
-import math
 from typing import Any
 
 from ..compiled.jit import internal
@@ -20,6 +19,7 @@ from .records import (
     B_S,
     B_T,
     BASE,
+    COMPANION,
     COS_WAY,
     COUNT,
     DIRECTION,
@@ -52,6 +52,7 @@ from .records import (
     whole,
 )
 from .resting import find_free
+from .three_tangents import first_of, size_of
 
 BEGINS = 2.0
 """In DIRECTION: sliding begins here."""
@@ -107,6 +108,12 @@ def _is_immovable(a: Any, count: int, i: int) -> bool:
 
 
 @internal
+def _is_led(ev: Any, a: Any, count: int, i: int) -> bool:
+    """True if no force moves it along those of its companion either."""
+    return _is_immovable(a, count, i) and _is_immovable(a, count, i + int(col(ev, COMPANION)[i]))
+
+
+@internal
 def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
     """Forces of the contacts `part`, and of others at rest that these press together again."""
     count, takes = whole(ev)[COUNT], col(ev, TAKES)
@@ -118,8 +125,8 @@ def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
         b[i], b[count + i], b[2 * count + i] = col(ev, B_N)[i], col(ev, B_T)[i], col(ev, B_S)[i]
         fastest = max(fastest, abs(b[i]), abs(b[count + i]), abs(b[2 * count + i]))
         direction[i], col(ev, BASE)[i] = col(ev, KNOWN)[i], 0.0
-        begins = math.sqrt(b[count + i] ** 2 + b[2 * count + i] ** 2)
-        if _is_immovable(a, count, i) and begins > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
+        begins = size_of(ev, i, col(ev, B_T), col(ev, B_S))
+        if _is_led(ev, a, count, i) and begins > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
             # its motion is prescribed, friction is against it
             direction[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (
                 BEGINS,
@@ -148,7 +155,7 @@ def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
         if joins:
             # what begins to slide follows from the forces of all that press, not of those that did before
             for i in range(count):
-                if direction[i] == BEGINS and not _is_immovable(a, count, i):
+                if direction[i] == BEGINS and not _is_led(ev, a, count, i):
                     direction[i] = 0.0
             continue
         clear(free, count)
@@ -157,11 +164,11 @@ def balance(ev: Any, ws: Any, ms: Any, lc: Any, part: Any) -> int:
         for i in range(count):
             if direction[i] == 0.0 and mu[i] > 0.0 and p[i] > 0.0:
                 # at its limit, and it moves: it begins to slide, against its friction
-                force, limit = math.sqrt(p[count + i] ** 2 + p[2 * count + i] ** 2), mu[i] * p[i]
-                moves = math.sqrt(col(ev, W_T)[i] ** 2 + col(ev, W_S)[i] ** 2) > STICKS_STILL * fastest
+                force, limit = size_of(ev, i, col(ev, F_T), col(ev, F_S)), mu[i] * p[i]
+                moves = size_of(ev, i, col(ev, W_T), col(ev, W_S)) > STICKS_STILL * fastest
                 # where a contact has its event at its limit, so have those that nothing else holds
                 least = limit * (1.0 - (REACHES_LIMIT_NOW if any_slips else REACHES_LIMIT))
-                if force >= least and (moves or free[i] != 0.0):
+                if force >= least and (moves or free[first_of(ev, i)] != 0.0):
                     direction[i] = BEGINS
                     col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = -p[count + i] / force, -p[2 * count + i] / force
                     again = again or any_slips or col(ev, KINETIC)[i] != col(ev, STATIC)[i]

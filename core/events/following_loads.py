@@ -8,6 +8,7 @@ load of its own. Where that is 1 or more the joint locks itself, and nothing is 
 from typing import Any
 
 from ..assembly.compatibility import solve_equations
+from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
@@ -22,10 +23,16 @@ MOST_ROUNDS = 100
 
 
 @internal
+def own_rows(ws: Any, k: int) -> int:
+    """Rows of the friction of a joint: of its gap and of its tangents. Those of the joint stand behind."""
+    return OWN_ROWS + 1 if in_space(ws, k) else OWN_ROWS
+
+
+@internal
 def _follows(ev: Any, ws: Any, lc: Any, i: int) -> bool:
     """True if the load of touching contact i follows the force of a joint."""
     k = ivec(ev.contacts, ev.most)[i]
-    return imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND] == JOINT and probe_of(lc, k).nrow > OWN_ROWS
+    return imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND] == JOINT and probe_of(lc, k).nrow > own_rows(ws, k)
 
 
 @internal
@@ -39,15 +46,16 @@ def _load_of(ws: Any, lc: Any, k: int, change: Any) -> float:
     to_q, to_v, to_a, r = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n), vec(lc.probe_r, n)
     for i in coord:
         to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
-    for j in range(OWN_ROWS, batch.nrow):
+    for j in range(own_rows(ws, k), batch.nrow):
         own[rows[j]] = lam[rows[j]]
         for i in range(ws.m_act):
             if active[i] == rows[j]:
                 own[rows[j]] += change[ws.n + i]
     call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
-    for j in range(OWN_ROWS, batch.nrow):
+    for j in range(own_rows(ws, k), batch.nrow):
         own[rows[j]] = 0.0
-    return float(vec(batch.par, batch.npar)[GAIN] * r[coord[0]])
+    stop = coord[batch.ncoord - 1 if in_space(ws, k) else 0]
+    return float(vec(batch.par, batch.npar)[GAIN] * r[stop])
 
 
 @internal

@@ -16,7 +16,8 @@ from ..linalg.small import call_least_norm
 from ..rounding import DIRECTION_RANK
 from .forces import cones_at
 from .rates import masses
-from .records import COS_WAY, COUNT, DIRECTION, F_N, F_S, F_T, SIN_WAY, STATIC, col, whole
+from .records import COMPANION, COS_WAY, COUNT, DIRECTION, F_N, F_S, F_T, SIN_WAY, STATIC, col, whole
+from .three_tangents import axis_in_frame, first_of, size_of, turn_frame
 
 RANK_OF_FREE = 1e-6
 """Of its inverse mass: a tangent of which no more is left beside other rows is held by these."""
@@ -25,13 +26,16 @@ RANK_OF_FREE = 1e-6
 @internal
 def is_full(ev: Any, i: int, near: float) -> bool:
     """True if the friction of contact i has reached its limit, but for the part `near` of it."""
-    size, limit = math.hypot(col(ev, F_T)[i], col(ev, F_S)[i]), col(ev, STATIC)[i] * col(ev, F_N)[i]
+    size, limit = size_of(ev, i, col(ev, F_T), col(ev, F_S)), col(ev, STATIC)[i] * col(ev, F_N)[i]
     return size > 0.0 and size >= (1.0 - near) * limit
 
 
 @internal
 def turn_to_friction(ev: Any, i: int, full: bool) -> None:
     """The frame of contact i: its second tangent along its friction if that is `full`, else as it was found."""
+    if col(ev, COMPANION)[i] != 0.0:
+        turn_frame(ev, i, col(ev, F_T), col(ev, F_S), full)
+        return
     size = math.hypot(col(ev, F_T)[i], col(ev, F_S)[i])
     col(ev, COS_WAY)[i] = col(ev, F_S)[i] / size if full else 1.0
     col(ev, SIN_WAY)[i] = -col(ev, F_T)[i] / size if full else 0.0
@@ -45,7 +49,7 @@ def add_tangents(ev: Any, ws: Any, i: int, full: bool, total: int) -> int:
     if plane and full:
         return total
     some[total] = count + i
-    if plane or full:
+    if plane or full or col(ev, COMPANION)[i] < 0.0:
         return total + 1
     some[total + 1] = 2 * count + i
     return total + 2
@@ -53,11 +57,17 @@ def add_tangents(ev: Any, ws: Any, i: int, full: bool, total: int) -> int:
 
 @internal
 def _part(ev: Any, count: int, row: int, which: int) -> Any:
-    """(direction, factor) of the two that make row `row`."""
+    """(direction, factor) of the two, or three, that make row `row`, which is none of a companion's second tangent."""
     i = row % count
     c, s = col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i]
     if row < count:
         return (row, 1.0) if which == 0 else (row, 0.0)
+    if col(ev, COMPANION)[i] != 0.0:
+        own = first_of(ev, i)
+        x, y, z = axis_in_frame(ev, own, row // count - 1 if i == own else 2)
+        return (count + own, x) if which == 0 else (2 * count + own, y) if which == 1 else (count + own + 1, z)
+    if which == 2:
+        return row, 0.0
     if row < 2 * count:
         return (count + i, c) if which == 0 else (2 * count + i, s)
     return (count + i, -s) if which == 0 else (2 * count + i, c)
@@ -67,9 +77,9 @@ def _part(ev: Any, count: int, row: int, which: int) -> Any:
 def _between(ev: Any, count: int, one: int, other: int) -> float:
     """Inverse mass between two rows."""
     a, total = masses(ev, count), 0.0
-    for j in range(2):
+    for j in range(3 if col(ev, COMPANION)[one % count] != 0.0 else 2):
         p, of_p = _part(ev, count, one, j)
-        for k in range(2):
+        for k in range(3 if col(ev, COMPANION)[other % count] != 0.0 else 2):
             q, of_q = _part(ev, count, other, k)
             total += of_p * of_q * a[p, q]
     return total
@@ -149,7 +159,7 @@ def list_held(ev: Any, ws: Any, among: Any, near: float, free: Any) -> int:
     for i in range(count):
         if among[i] != 0.0 and f_n[i] > 0.0 and direction[i] == 0.0 and col(ev, STATIC)[i] > 0.0:
             full = is_full(ev, i, near)
-            free[i] = 1.0 if full else 0.0
+            free[i] = 1.0 if full and col(ev, COMPANION)[i] >= 0.0 else 0.0
             turn_to_friction(ev, i, full)
             total = add_tangents(ev, ws, i, full, total)
     return total

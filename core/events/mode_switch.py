@@ -38,6 +38,7 @@ from .progress import GUARD_SIZE, START
 from .reading import slow_sliding
 from .records import (
     AXIS_NOW,
+    COMPANION,
     COS_WAY,
     COUNT,
     DIRECTION,
@@ -68,6 +69,7 @@ from .records import (
     whole,
 )
 from .report import report
+from .three_tangents import first_of
 
 BEGINS_AT_REST = 0.9
 """Part of the torque against spinning up to which a contact that begins to slide creeps."""
@@ -106,6 +108,8 @@ def take_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
             memory[WAY], memory[AXIS] = np.arctan2(col(ev, SIN_WAY)[i], col(ev, COS_WAY)[i]), col(ev, AXIS_NOW)[i]
             memory[SLOW_SLIDING] = slow_sliding(ws, k)
             memory[LEAN] = _lean(ev, i) if abs(memory[SLIDE]) == 1.0 else 0.0
+            if col(ev, COMPANION)[i] != 0.0:
+                _take_three_tangents(ev, i, memory)
         elif memory[SLIDE] == STUCK and not kept and slides[k] >= 0:
             memory[SLIDE_START] = col(ev, SLIDE_VALUE)[i]
     if some:
@@ -133,6 +137,18 @@ def _take_in_plane(memory: Any, way: float) -> None:
 
 
 @internal
+def _take_three_tangents(ev: Any, i: int, memory: Any) -> None:
+    """The direction, or the frame, of contact i and its companion, for the memory of one of them."""
+    own = first_of(ev, i)
+    c, s, level, lean = (
+        col(ev, COS_WAY)[own], col(ev, SIN_WAY)[own], col(ev, COS_WAY)[own + 1], col(ev, SIN_WAY)[own + 1]
+    )  # fmt: skip
+    if abs(memory[SLIDE]) == 1.0:
+        level, lean = np.hypot(c, s), level
+    memory[WAY], memory[LEAN] = np.arctan2(s, c), np.arctan2(lean, level)
+
+
+@internal
 def _lean(ev: Any, i: int) -> float:
     """Angle out of the tangent plane at which contact i slides and spins; where it begins to, that of its friction."""
     part = col(ev, HELD_SPIN)[i]
@@ -150,6 +166,8 @@ def report_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> None:
     started = t > vec(dr.guard, GUARD_SIZE)[START]
     for i in range(whole(ev)[COUNT]):
         k, was, slid = contacts[i], col(ev, WAS)[i], col(ev, SLID)[i]
+        if col(ev, COMPANION)[i] < 0.0:
+            continue
         memory, kind = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k], -1
         closed = memory[MODE] == CLOSED
         if closed and was != CLOSED:

@@ -8,7 +8,6 @@ sliding given (Moreau 1988; Jean 1999). That problem always has a solution. What
 stopped, what would slide slides as it would at the moment's end; divided by the moment, impulses are forces.
 """
 
-import math
 from typing import Any
 
 from ..assembly.evaluate import evaluate_energy
@@ -28,6 +27,7 @@ from .records import (
     B_S,
     B_T,
     BASE,
+    COMPANION,
     COS_WAY,
     COUNT,
     DIRECTION,
@@ -67,6 +67,7 @@ from .records import (
     whole,
 )
 from .report import report
+from .three_tangents import size_of
 from .touching import looks_again
 
 FIRST_LOOK, SHORT, LONG = 3, 1e-11, 1e-5
@@ -152,7 +153,11 @@ def decide_by_moment(ev: Any, dr: Any, ws: Any, ms: Any, part: Any, moment: floa
     pressed, slow = col(ev, BASE), col(ev, SPARE)
     for i in range(count):
         pressed[i] = 1.0 if col(ev, P_N)[i] > 0.0 else 0.0
-        slow[i] = 1.0 if abs(col(ev, W_T)[i]) + abs(col(ev, W_S)[i]) <= FAST * least else 0.0
+        other = i + int(col(ev, COMPANION)[i])
+        moves = abs(col(ev, W_T)[i]) + abs(col(ev, W_S)[i])
+        if other != i:
+            moves += abs(col(ev, W_T)[other]) + abs(col(ev, W_S)[other])
+        slow[i] = 1.0 if moves <= FAST * least else 0.0
     _move(ev, dr, ws, pressed, slow, True, True)
     _report(ev, dr, ms, least)
     for i in range(count):
@@ -169,10 +174,9 @@ def _say_what_slides(ev: Any, least: float) -> None:
     direction = col(ev, DIRECTION)
     for i in range(whole(ev)[COUNT]):
         x, y, p_n = col(ev, W_T)[i], col(ev, W_S)[i], col(ev, P_N)[i]
-        speed = (x * x + y * y) ** 0.5
-        friction = (col(ev, P_T)[i] ** 2 + col(ev, P_S)[i] ** 2) ** 0.5
+        speed, friction = size_of(ev, i, col(ev, W_T), col(ev, W_S)), size_of(ev, i, col(ev, P_T), col(ev, P_S))
         inside = p_n > 0.0 and friction < col(ev, MU)[i] * p_n * (1.0 - REACHES_LIMIT)
-        before = (col(ev, SLIDE_RATE)[i] ** 2 + col(ev, SWAY_RATE)[i] ** 2) ** 0.5
+        before = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
         direction[i] = col(ev, KNOWN)[i] = 0.0
         col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 1.0, 0.0
         spins = abs(col(ev, HELD_SPIN)[i]) > SPINS
@@ -196,7 +200,7 @@ def stop_rates(ev: Any, dr: Any, ws: Any) -> None:
     still, slips, opens = col(ev, SPARE), False, False
     for i in range(whole(ev)[COUNT]):
         still[i] = 1.0 if col(ev, KNOWN)[i] == 0.0 and col(ev, STATIC)[i] > 0.0 else 0.0
-        speed = math.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])
+        speed = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
         if col(ev, LOADED)[i] != 0.0:
             begins = col(ev, DIRECTION)[i] != 0.0
             slips = slips or (still[i] != 0.0 and speed > (0.0 if begins else col(ev, ROUNDING)[i]))
@@ -273,7 +277,7 @@ def _report(ev: Any, dr: Any, ms: Any, least: float) -> None:
     for i in range(count):
         x = col(ev, SLIDE_RATE)[i] - col(ev, SLIDE_BEFORE)[i]
         y = col(ev, SWAY_RATE)[i] - col(ev, SWAY_BEFORE)[i]
-        if (x * x + y * y) ** 0.5 > FAST * least and col(ev, P_N)[i] > 0.0:
+        if (x * x + y * y) ** 0.5 > FAST * least and col(ev, P_N)[i] > 0.0 and col(ev, COMPANION)[i] == 0.0:
             friction = (p[count + i] ** 2 + p[2 * count + i] ** 2) ** 0.5
             lost, apart = col(ev, STOP_LOSS)[i] - col(ev, LOST_BEFORE)[i], max(col(ev, RATE)[i], 0.0)
             k = ivec(ev.contacts, ev.most)[i]

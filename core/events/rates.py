@@ -14,6 +14,7 @@ from ..rounding import FRICTION_GOOD, STICKS_STILL
 from .forces import cones_at
 from .pivot_in_plane import has_one_tangent, pivot_in_plane
 from .records import (
+    COMPANION,
     COS_WAY,
     COUNT,
     FIRMNESS,
@@ -110,8 +111,9 @@ def _connected(ev: Any, a: Any, count: int, left: Any) -> int:
         p = some[at]
         for i in range(count):
             if left[i] != 0.0:
+                together = i != p and i == p + int(col(ev, COMPANION)[p])
                 for row in range(9):
-                    if a[(row // 3) * count + p, (row % 3) * count + i] != 0.0:
+                    if together or a[(row // 3) * count + p, (row % 3) * count + i] != 0.0:
                         some[n], left[i] = i, 0.0
                         n += 1
                         break
@@ -154,11 +156,12 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
     room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
     own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
     own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
-    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 2, n)
+    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 3, n)
     for i in range(n):
         p_i, firm = some[i], firmness[some[i]]
         own_mu[i], own_base[i], own_known[i] = mu[p_i], base[p_i] / firm, known[p_i]
-        way[0, i], way[1, i] = col(ev, COS_WAY)[p_i], col(ev, SIN_WAY)[p_i]
+        way[0, i], way[1, i], step = col(ev, COS_WAY)[p_i], col(ev, SIN_WAY)[p_i], int(col(ev, COMPANION)[p_i])
+        way[2, i] = step if 0 <= i + step < n and some[i + step] == p_i + step else 0.0
         for block in range(3):
             own_b[block * n + i] = firm * b[block * count + p_i]
             for j in range(n):
@@ -180,7 +183,7 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
 def _recalled(ev: Any, n: int) -> bool:
     """True if the problem of n contacts in the room is the last one that was solved: then its forces are in the room
     too. An instant that wants memory is decided again from its beginning."""
-    size = 9 * n * n + 11 * n
+    size = 9 * n * n + 12 * n
     room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
     first, behind = 9 * n * n + 3 * n, 9 * n * n + 6 * n
     if kept[0] != n:
@@ -197,7 +200,7 @@ def _recalled(ev: Any, n: int) -> bool:
 
 @internal
 def _keep_solved(ev: Any, n: int, unshared: int) -> None:
-    size = 9 * n * n + 11 * n
+    size = 9 * n * n + 12 * n
     room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
     kept[0], kept[1] = n, unshared
     for i in range(size):
@@ -211,9 +214,11 @@ def _solve_in_room(ev: Any, n: int, who: int) -> bool:
     room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
     own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
     own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
-    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 2, n)
-    work, least_norm = ev.space_room + 8 * (9 * n * n + 11 * n), cones_at(ev.cones).least_norm
+    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 3, n)
+    work, least_norm = ev.space_room + 8 * (9 * n * n + 12 * n), cones_at(ev.cones).least_norm
     found, plane, unshared = False, n > 1 and has_one_tangent(n, own), 0
+    for i in range(n):
+        plane = plane and way[2, i] == 0.0
     # few contacts: sweeps are faster than pivoting, but for those that take many; many contacts: the other way round
     for attempt in range(3):
         if found or (attempt < 2 and not plane) or (attempt == 0 and n > MANY):

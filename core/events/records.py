@@ -90,8 +90,9 @@ instant_at = record_view(INSTANT_TYPE)
     NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
     LEFT_OVER,                         # 1: of a part of the mechanism whose problem is still to be solved
     FIRMNESS,                          # one over the root of its relative compliance
-) = range(74)  # fmt: skip
-COLUMNS = 74
+    COMPANION,                         # how far on the contact stands that shares its friction (`three_tangents.py`)
+) = range(75)  # fmt: skip
+COLUMNS = 75
 
 # entries of `reals`
 NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK = range(5)

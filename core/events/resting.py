@@ -51,6 +51,7 @@ from .records import (
     whole,
 )
 from .spins import brake_by_spins, read_spins
+from .three_tangents import size_of
 from .touching import force_noise
 
 ENDS_WITH = 2.0
@@ -64,7 +65,7 @@ def _look(ev: Any, dr: Any, ws: Any) -> None:
     contacts, stopped = ivec(ev.contacts, ev.most), 0.0
     for i in range(whole(ev)[COUNT]):
         x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
-        speed, z = math.sqrt(x * x + y * y), col(ev, SPIN)[i]
+        speed, z = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE)), col(ev, SPIN)[i]
         stood = z != 0.0 and col(ev, WAS)[i] == CLOSED and abs(col(ev, SLID)[i]) != 1.0
         if (stood or col(ev, STOPS)[i] != 0.0) and whole(ev)[STRUCK] == 0:
             # it has gone on in its direction to where error control does not resolve another; or it creeps
@@ -79,7 +80,7 @@ def _look(ev: Any, dr: Any, ws: Any) -> None:
             stopped = max(stopped, speed)
     # what moves no faster than a contact that stops has stopped with it, as finely as the time of that is known
     for i in range(whole(ev)[COUNT] if whole(ev)[STRUCK] == 0 else 0):
-        speed = math.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])
+        speed = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
         if col(ev, SPIN)[i] == 0.0 and speed <= ENDS_WITH * stopped:
             col(ev, KNOWN)[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 0.0, 1.0, 0.0
     brake_by_spins(ev, dr, ws)

@@ -17,6 +17,7 @@ from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, SLIDE, SLIDE_STA
 from ..state.run_records import COUNTS_SIZE, HERE
 from .laws import FORCE, MASSLESS
 from .records import (
+    COMPANION,
     COUNT,
     GAP,
     IMMOVABLE_CONTACT,
@@ -39,13 +40,17 @@ def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
     pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
     phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
     level, count, sleeping = GAP_ROUNDING * position_level(ws), 0, ivec(ws.sleeping, ws.n_contacts)
+    companion = ivec(ws.contact_companion, ws.n_contacts)
+    for k in range(ws.n_contacts):
+        if pending[k] != 0 and companion[k] != 0:
+            pending[k + companion[k]] = 1
     for k in range(ws.n_contacts):
         if law[k] == FORCE or law[k] == MASSLESS or sleeping[k] != 0:
             continue
         if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == ev.most:
                 return False
-            contacts[count] = k
+            contacts[count], col(ev, COMPANION)[count] = k, companion[k]
             count += 1
     whole(ev)[COUNT] = count
     return True

@@ -98,11 +98,14 @@ def near_level(ws: Any, h: float) -> float:
 @internal
 def may_push(dr: Any, ws: Any, ms: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, and
-    where contacts are at massless ends, or constraints in space that cannot be looked at alone."""
+    where contacts are at massless ends, constraints in space that cannot be looked at alone, or friction with three
+    tangents, of which a row of impulses knows two."""
     law, lc = ivec(dr.law, ws.n_contacts), loop_at(dr.loop)
     if ms.exact == 0:
         return False
     for k in range(ws.n_contacts):
+        if ivec(ws.contact_companion, ws.n_contacts)[k] != 0:
+            return False
         if law[k] == MASSLESS or (law[k] != FORCE and in_space(ws, k) and not can_look(lc, k)):
             return False
     return True

@@ -95,6 +95,35 @@ def turned(columns: Any, p: Any) -> Any:
     return times(0.5, along(columns, p))
 
 
+@inlined
+def space_axes(p: Any) -> Any:
+    """E(p) = [-e, e0 I + e~] as its four columns: the angular velocity in space is 2 E p'."""
+    return (
+        (-p[1], -p[2], -p[3]),
+        (p[0], p[3], -p[2]),
+        (-p[3], p[0], p[1]),
+        (p[2], -p[1], p[0]),
+    )
+
+
+@inlined
+def add_lever(values: Any, slot: Any, first: int, factor: float, y: Any) -> None:
+    """values += factor d(E(p)^T y)/dp = factor [[0, -y^T], [y, y~]] in the Euler parameters from `first`."""
+    y0, y1, y2 = factor * y[0], factor * y[1], factor * y[2]
+    values[slot[first, first + 1]] -= y0
+    values[slot[first, first + 2]] -= y1
+    values[slot[first, first + 3]] -= y2
+    values[slot[first + 1, first]] += y0
+    values[slot[first + 2, first]] += y1
+    values[slot[first + 3, first]] += y2
+    values[slot[first + 1, first + 2]] -= y2
+    values[slot[first + 1, first + 3]] += y1
+    values[slot[first + 2, first + 1]] += y2
+    values[slot[first + 2, first + 3]] -= y0
+    values[slot[first + 3, first + 1]] -= y1
+    values[slot[first + 3, first + 2]] += y0
+
+
 @internal
 def bend(f: Any, u: Any) -> Any:
     """Second derivative of f . (A u) by p, its upper triangle row by row (10)."""

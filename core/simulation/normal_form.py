@@ -207,7 +207,8 @@ def _forget_in_memories(dr: Any, ws: Any, lc: Any, shift: int) -> None:
             if memory[MODE] == OPEN:
                 memory[APPROACH_SPEED] = memory[BEGUN_IMPULSE] = memory[BEGUN_LOSS] = 0.0
         elif law[k] != MASSLESS:
-            if not in_space(ws, k) or not (memory[MODE] == CLOSED and abs(memory[SLIDE]) == 1.0):
+            leans = abs(memory[SLIDE]) == 1.0 or ivec(ws.contact_companion, ws.n_contacts)[k] != 0
+            if not in_space(ws, k) or not (memory[MODE] == CLOSED and leans):
                 memory[APPROACH_SPEED] = 0.0  # (of what slides in space it is LEAN)
             if not in_space(ws, k) and not (memory[MODE] == CLOSED and memory[SLIDE] == STICKS):
                 memory[SLIDE_START] = 0.0

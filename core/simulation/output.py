@@ -189,17 +189,27 @@ class ChannelTable:
 
     def _add_contact(self, k: int, contact: ContactInfo) -> None:
         layout, name, (gap, slide) = self.layout, contact.name, contact.units
+        if contact.companion < 0:
+            return  # what it has is shown with the contact before it
         force, impulse = conjugate(gap), layout.work[f"{name}.impulse"]
         lost = Sum((layout.work[f"{name}.dissipation"], layout.loss_jump + k))
         dissipation = Channel(f"{name}.dissipation", "J", "energy lost in the contact since the start")
         state = Channel(f"{name}.mode", "1", f"contact state: {MODE_NAMES}", "integer", CONTACT_STATE)
         if not contact.has_shapes:
             friction = f"{name}.{'friction_torque' if slide == 'rad' else 'friction_force'}"
+            against = "on body b, against the sliding velocity"
+            if contact.companion > 0:
+                against = "on body b: size"
+                columns = layout.force + k, layout.force + k + 1, layout.friction + k + 1
+                for axis, column in zip("xyz", columns, strict=True):
+                    said = f"on body b, {axis} component along the axes of space"
+                    channel = Channel(f"{friction}_{axis}", conjugate(slide), said)
+                    self._formulas.append((channel, Sum((column,), factor=contact.size)))
             self._formulas += [
                 (dissipation, lost),
                 (state, layout.mode + k),
                 (
-                    Channel(friction, conjugate(slide), "on body b, against the sliding velocity"),
+                    Channel(friction, conjugate(slide), against),
                     Sum((layout.friction + k,), factor=contact.size),
                 ),
                 (

@@ -52,9 +52,12 @@ def _channels_at(ex: Any, ws: Any, held: Any, out: Any) -> None:
     sample = vec(ex.sample, ex.sample_length)
     write_sample(ws, sample)
     monitor, memory = vec(ws.monitor, 2 * ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    companion = ivec(ws.contact_companion, ws.n_contacts)
     for k in range(ws.n_contacts):
         normal = 1 + 3 * ws.n + ws.m_ext - 1 + k
-        if memory[k, MODE] == CLOSED or memory[k, MODE] == ACTIVE:
+        if companion[k] < 0:
+            continue  # (there stand components, which are linear)
+        if companion[k] == 0 and (memory[k, MODE] == CLOSED or memory[k, MODE] == ACTIVE):
             # a change may have either sign, where a sample shows no force that pulls
             sample[normal] = monitor[k]
         along = normal + 6 * ws.n_contacts
@@ -75,8 +78,12 @@ def _change_of_friction(ws: Any, k: int, held: Any, size: float) -> float:
         return -size if lam[normal] > 0.0 else size
     across = normal if state == AT_LIMIT else row + 1
     part = memory[RATIO] * memory[RATIO] if state == AT_LIMIT else 1.0
-    force = math.sqrt(held[row] * held[row] + part * held[across] * held[across])
-    return (held[row] * lam[row] + part * held[across] * lam[across]) / force if force > 0.0 else size
+    square = held[row] * held[row] + part * held[across] * held[across]
+    change = held[row] * lam[row] + part * held[across] * lam[across]
+    if ivec(ws.contact_companion, ws.n_contacts)[k] > 0:
+        third = ivec(ws.contact_slide_rows, ws.n_contacts)[k + 1]
+        square, change = square + held[third] * held[third], change + held[third] * lam[third]
+    return change / math.sqrt(square) if square > 0.0 else size
 
 
 @internal

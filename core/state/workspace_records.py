@@ -18,6 +18,7 @@ WORKSPACE = np.dtype(
             # model
             "kernels", "batches", "evaluate_function", "stage_function", "analyze", "contact_rows", "contact_release",
             "contact_slide_rows", "contact_second_rows", "contact_sticking",
+            "contact_companion",  # (contacts,) int64: how far on the one stands that shares its friction; 0: none
             # (contacts,) int64: 1 where a contact is not evaluated (`event_detection/contact_sleeping.py`)
             "sleeping",
             # (contacts,) codes of `structure_switch.py`; the present structure, and one not to be given up (0: none)

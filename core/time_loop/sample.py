@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..assembly.evaluate import evaluate_energy, recorded_norm
-from ..assembly.sticking_force import in_space
+from ..assembly.sticking_force import in_space, torque_of_three
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..event_detection.joint_loads import share_joint_loads
@@ -75,6 +75,11 @@ def write_row(ws: Any, out: Any, energies: bool) -> None:
                 x, y = phid[slide_rows[k]], phid[slide_rows[k] + 1]
                 slides = mode == CLOSED and abs(memory[k, SLIDE]) == 1.0
                 out[at + 7 * contacts + k] = y if slides else np.sqrt(x * x + y * y)
+            if ivec(ws.contact_companion, contacts)[k] < 0:
+                # (friction with three tangents: its size and components, where a normal force and friction stand)
+                x, y, z = torque_of_three(ws, k - 1)
+                out[at + k - 1], out[at + k], out[at + 6 * contacts + k] = x, y, z
+                out[at + 6 * contacts + k - 1] = np.sqrt(x * x + y * y + z * z)
         at += 8 * contacts
     if energies:
         evaluate_energy(ws)

@@ -20,7 +20,7 @@ def solve(a, b, mu, base=None, known=None, way=None):
     n = len(mu)
     p, work = np.zeros(3 * n), np.zeros(friction_cones_size(n))
     base = np.zeros(n) if base is None else base
-    known, way = np.zeros(n) if known is None else known, np.zeros((2, n)) if way is None else way
+    known, way = np.zeros(n) if known is None else known, np.zeros((3, n)) if way is None else way
     address = address_of(least_norm, LEAST_NORM_SIGNATURE)
     status = _solve(address, n, a, b, np.asarray(mu, float), base, known, way, p, work.ctypes.data)
     assert status == FOUND
@@ -36,7 +36,7 @@ def least(p, a, b, mu):
     """Forces of least norm, from the forces p."""
     n = len(mu)
     found, work = p.copy(), np.zeros(friction_cones_size(n) + least_forces_size(n))
-    nothing, way = np.zeros(n), np.zeros((2, n))
+    nothing, way = np.zeros(n), np.zeros((3, n))
     address = address_of(least_norm, LEAST_NORM_SIGNATURE)
     assert _least(address, n, a, b, np.asarray(mu, float), nothing, nothing, way, found, work.ctypes.data)
     return found
@@ -149,7 +149,7 @@ def test_sphere_slides_against_its_slip_or_sticks():
 
 
 def test_known_directions_and_forces_that_act_in_any_case():
-    a, way = np.diag([1.0, 3.5, 3.5]), np.array([[0.6], [0.8]])
+    a, way = np.diag([1.0, 3.5, 3.5]), np.array([[0.6], [0.8], [0.0]])
     p, _ = solve(a, np.array([-2.0, 0.0, 0.0]), [0.3], known=np.ones(1), way=way)
     assert p == pytest.approx([2.0, -0.36, -0.48])
     p, w = solve(a, np.array([1.0, 0.9, 0.0]), [0.1], base=np.array([0.5]))
@@ -242,3 +242,27 @@ def test_forces_that_do_not_exist_are_not_found():
     p, work = np.zeros(3), np.zeros(friction_cones_size(1))
     address = address_of(least_norm, LEAST_NORM_SIGNATURE)
     assert _solve(address, 1, a, *args, p, work.ctypes.data) != FOUND
+
+
+@pytest.mark.parametrize("rank", [6, 4, 2])
+@pytest.mark.parametrize("seed", range(10))
+def test_friction_with_three_tangents_lies_in_a_ball(seed, rank):
+    """Two loads whose friction has three tangents each, in contacts 0 and 1, 2 and 3, and moves that of the other."""
+    random, n = np.random.default_rng(seed), 4
+    rows = np.array([[n, 2 * n, n + 1], [n + 2, 2 * n + 2, n + 3]])
+    a, b, mu = np.zeros((3 * n, 3 * n)), np.zeros(3 * n), np.full(n, 0.7)
+    a[:n, :n], b[:n] = np.diag(random.uniform(0.5, 2.0, n)), -1.0
+    b[1], b[3] = b[0] * a[1, 1] / a[0, 0], b[2] * a[3, 3] / a[2, 2]
+    root = random.normal(size=(6, rank))
+    a[np.ix_(rows.ravel(), rows.ravel())] = root @ root.T
+    b[rows.ravel()] = root @ random.normal(size=rank) * random.choice([0.3, 3.0])
+    way = np.zeros((3, n))
+    way[2] = [1.0, -1.0, 1.0, -1.0]
+    p, w = solve(a, b, mu, way=way)
+    assert p[:n] == pytest.approx(-b[:n] / np.diag(a)[:n], rel=1e-12)
+    for k, three in enumerate(rows):
+        force, motion, limit = p[three], w[three], 0.7 * p[2 * k]
+        size, speed = np.linalg.norm(force), np.linalg.norm(motion)
+        assert size <= limit * (1.0 + 1e-9)
+        if speed > 1e-6 * np.abs(b).max():
+            assert force == pytest.approx(-limit * motion / speed, abs=1e-6 * limit)

@@ -140,6 +140,7 @@ from tlismni.core import (
     SphereOnSmooth3D,
     SphereOnSphere3D,
     Spherical3D,
+    SphericalFriction3D,
     SpringDamper2D,
     SpringDamper3D,
     Step,
@@ -419,6 +420,8 @@ ELEMENTS["forces"] += [
     st.builds(RelativeLoad3D, **ENDS3D, load=signal, measure=MEASURES),
     st.builds(RevoluteFriction3D, **ENDS3D, torque=positive, transition_rate=positive),
     st.builds(SlideFriction3D, **ENDS3D, force=positive, transition_speed=positive),
+    st.builds(SphericalFriction3D, **ENDS3D, torque=positive, transition_rate=positive),
+    st.builds(SphericalFriction3D, **ENDS3D, torque=positive, static_ratio=st.floats(1.0, 3.0)),
     st.builds(SlideFriction3D, **ENDS3D, force=positive, static_ratio=st.floats(1.0, 3.0)),
     st.builds(
         Servo3D, **ENDS3D, target=signal, measure=MEASURES, gain=positive, rate_gain=positive, of_rate=st.just(False)
@@ -547,7 +550,8 @@ SPATIAL = {
     "SphereOnMesh3D", "SphereOnSmooth3D", "SphereOnCylinder3D", "SphereOnRing3D", "CableOnHalfSpace3D", "Cable3D",
     "MaterialPoint3D", "CableClamp3D",
     "AngleStop3D", "SlideStop3D", "Rope3D", "DistanceStop3D", "RollingDisk3D", "RollingSphere3D",
-    "TableSpring3D", "RelativeLoad3D", "RevoluteFriction3D", "SlideFriction3D", "Servo3D", "PIDController3D",
+    "TableSpring3D", "RelativeLoad3D", "RevoluteFriction3D", "SlideFriction3D", "SphericalFriction3D", "Servo3D",
+    "PIDController3D",
 }  # fmt: skip
 BODY = RigidBody2D(name="b", mass=1.0, inertia=1.0)
 SOLID = RigidBody3D(name="s", mass=1.0, inertia=(1.0, 1.0, 1.0))

@@ -27,6 +27,8 @@ from tlismni.core import (
     Simulation,
     Sine,
     SlideFriction3D,
+    Spherical3D,
+    SphericalFriction3D,
     SpringDamper3D,
     TableSpring3D,
     TorsionSpring3D,
@@ -96,6 +98,14 @@ CASES = {
                 name="friction", **ENDS, torque=1.2, joint="joint", coefficient=0.2, radius=0.1, static_ratio=1.1
             ),
             TorsionSpring3D(name="spring", **ENDS, stiffness=3.0),
+        ],
+    },
+    "friction of a ball that stops": {
+        "joints": [Spherical3D(name="joint", **ENDS)],
+        "forces": [
+            SphericalFriction3D(
+                name="friction", **ENDS, torque=1.2, joint="joint", coefficient=0.2, radius=0.1, static_ratio=1.1
+            ),
         ],
     },
     "forces along": {

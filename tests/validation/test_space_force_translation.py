@@ -23,6 +23,8 @@ from tlismni.core import (
     Servo3D,
     Sine,
     SlideFriction3D,
+    Spherical3D,
+    SphericalFriction3D,
     SpringDamper3D,
     TableSpring3D,
 )
@@ -132,6 +134,23 @@ def test_forces_on_a_sleeve(force):
     # the angle passes half a turn, and a kink of its table, at 0.33 s
     end = 0.5 if force == "table of an angle" else 0.25
     agree(model, (*MOTION, "sleeve.angle", "sleeve.position"), end, 1.25e-3)
+
+
+@needs_exudyn
+def test_friction_of_a_ball_joint():
+    bodies = pair(about=9.0)
+    at = ends(bodies)
+    rub = SphericalFriction3D(name="f", **at, torque=0.05, transition_rate=2.0)
+    model = Model(bodies=bodies, joints=[Spherical3D(name="ball", **at)], forces=[rub])
+    agree(model, (*MOTION, "two.angular_velocity_x", "two.angular_velocity_y"), 0.25, 1.25e-3)
+
+
+def test_set_valued_friction_of_a_ball_joint_has_no_equal():
+    bodies = pair(about=9.0)
+    at = ends(bodies)
+    rub = SphericalFriction3D(name="f", **at, torque=0.05)
+    with pytest.raises(NotTranslatable, match="is set-valued"):
+        run_exudyn(Model(bodies=bodies, joints=[Spherical3D(name="ball", **at)], forces=[rub]), 0.1, 1e-3)
 
 
 @needs_exudyn

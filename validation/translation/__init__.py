@@ -19,6 +19,7 @@ from . import (  # noqa: F401
     space_contacts,
     space_equations,
     space_stops,
+    spherical_friction3d,
     springs3d,
 )
 from .registry import Build, Column, ContactColumns, find_translator, translate, translates

@@ -11,6 +11,7 @@ from operator import add, mul
 import numpy as np
 
 from ...core.elements import Bushing3D
+from ...core.elements.measured_force3d import Pair3D
 from ...core.model.markers import Marker3D
 from .registry import Build, translates
 from .space_contacts import End, Vector, check_bodies, cross, dot, plus, vector
@@ -47,7 +48,7 @@ def _matrix(given: Sequence[object]) -> np.ndarray:
 class Deflection:
     """(s, f) of marker b seen from a: places, m, and 2 sin(angle/2) about the axis of turning, along the axes of a."""
 
-    def __init__(self, build: Build, record: Bushing3D, nodes: Nodes) -> None:
+    def __init__(self, build: Build, record: Pair3D, nodes: Nodes) -> None:
         self.a, self.b = End(build, record.a, nodes), End(build, record.b, nodes)
         self.axes: list[Vector] = [vector(axis) for axis in record.a.axes().T]
         self.turns = _attitude(record.a), _attitude(record.b)

@@ -93,7 +93,7 @@ def table_spring(record: TableSpring2D | TableSpring3D, build: Build) -> None:
     add_effort(record, build, measure, lambda x, rate, t: float(pull(x)) + c * rate)
 
 
-def _transition(record: JointFrictionForce) -> float:
+def transition_of(record: JointFrictionForce) -> float:
     """Of a regularised friction. Raises NotTranslatable for a set-valued one."""
     if record.transition is None:
         raise NotTranslatable(
@@ -106,14 +106,14 @@ def _transition(record: JointFrictionForce) -> float:
 @translates(RevoluteFriction2D, RevoluteFriction3D)
 def revolute_friction(record: RevoluteFriction2D | RevoluteFriction3D, build: Build) -> None:
     """T tanh(phi'/w)."""
-    size, width = record.torque, _transition(record)
+    size, width = record.torque, transition_of(record)
     add_effort(record, build, "angle", lambda x, rate, t: size * math.tanh(rate / width))
 
 
 @translates(SlideFriction2D, SlideFriction3D)
 def slide_friction(record: SlideFriction2D | SlideFriction3D, build: Build) -> None:
     """F tanh(s'/v)."""
-    size, width = record.force, _transition(record)
+    size, width = record.force, transition_of(record)
     add_effort(record, build, "slide", lambda x, rate, t: size * math.tanh(rate / width))
 
 
