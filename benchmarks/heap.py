@@ -13,13 +13,7 @@ from time import process_time, thread_time
 
 import exudyn as exu
 import numpy as np
-from exudyn.itemInterface import (
-    MarkerBodyRigid,
-    NodeRigidBody2D,
-    ObjectGround,
-    ObjectRigidBody2D,
-    SensorNode,
-)
+from exudyn.itemInterface import MarkerBodyRigid, NodeRigidBody2D, ObjectGround, ObjectRigidBody2D, SensorNode
 from numpy.typing import NDArray
 from tlismni.core import (
     CoulombFriction,

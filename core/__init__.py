@@ -9,15 +9,16 @@ from .lazy_import import late_names
 
 if TYPE_CHECKING:
     from .assembly.redundancy import RedundantRow
+    from .batch_result import Runs
     from .compiled_model import CompiledModel, compile_model
     from .contact_solvers.solve_friction import FrictionSolution, solve_friction
     from .contacts.angle_stop2d import AngleStop2D
     from .contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
-    from .contacts.box2d import Box2D, DiskOnBox2D
     from .contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
     from .contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
     from .contacts.coordinate_contact import CoordinateContact, CoordinateTerm
     from .contacts.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
+    from .contacts.disk_on_box2d import Box2D, DiskOnBox2D
     from .contacts.disk_on_cable import DiskOnCable2D
     from .contacts.disk_on_line import DiskOnLine2D, Line2D
     from .contacts.edges3d import EdgesOnEdges3D
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from .contacts.segment2d import DiskOnSegment2D, Segment2D
     from .contacts.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
     from .contacts.support3d import SmoothShape3D, support_formula
-    from .description import Model
     from .elements import (
         AngleDriver3D,
         AppliedForce2D,
@@ -170,17 +170,17 @@ if TYPE_CHECKING:
         TurningFriction,
     )
     from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
-    from .many_runs import simulate_many
     from .methods.registry import METHODS
     from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
     from .model.channels import Channel, Formula, Input, Parameter
     from .model.markers import Marker2D, Marker3D
     from .model.outputs import MarkerOutput2D, MarkerOutput3D
     from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
-    from .one_run import simulate
+    from .multibody_model import Model
     from .results.result import Result
     from .results.stored import load_result
-    from .runs import Runs
+    from .simulate_batch import simulate_many
+    from .simulate_one import simulate
     from .simulation.simulation import Simulation
     from .simulation.state import State
     from .tolerances import OfScales
@@ -414,7 +414,7 @@ __getattr__, __dir__ = late_names(
     {
         ".compiled_model": "CompiledModel compile_model",
         ".input_signals": "Courses",
-        ".description": "Model",
+        ".multibody_model": "Model",
         ".elements": (
             "AngleDriver3D AppliedForce2D AppliedForce3D AppliedTorque2D AppliedTorque3D Attachment AxialRod "
             "AxialSpring3D Belt2D BodyElement Bushing2D Bushing3D Cable2D Cable3D CableClamp3D Clamp2D "
@@ -445,19 +445,19 @@ __getattr__, __dir__ = late_names(
             "TanhFriction ThrelfallFriction TurningFriction"
         ),
         ".laws.stiffness": "Material sphere_on_plane sphere_on_sphere",
-        ".many_runs": "simulate_many",
+        ".simulate_batch": "simulate_many",
         ".methods.registry": "METHODS",
         ".model.attitude": "Axes AxisAngles EulerParameters RotationVector",
         ".model.channels": "Channel Formula Input Parameter",
         ".model.markers": "Marker2D Marker3D",
         ".model.outputs": "MarkerOutput2D MarkerOutput3D",
         ".model.signals": "Constant InputSignal Polynomial Ramp Sine Step Table",
-        ".one_run": "simulate",
+        ".simulate_one": "simulate",
         ".results.result": "Result",
         ".results.stored": "load_result",
         ".simulation.simulation": "Simulation",
         ".simulation.state": "State",
-        ".runs": "Runs",
+        ".batch_result": "Runs",
         ".contact_solvers.solve_friction": "FrictionSolution solve_friction",
         ".contacts.angle_stop2d": "AngleStop2D",
         ".contacts.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from .assembly.assembly import Assembly
 from .compiled.image import twin
 from .compiled.notices import compile_notices
-from .description import Model
 from .errors import ModelError
 from .model.said_angle import CountsTurns
+from .multibody_model import Model
 from .simulation.blueprint import Blueprint, Unstarted, can_be_copied, take_numbers, what_differs
 from .simulation.simulation import Simulation
 

@@ -9,11 +9,11 @@ is met by the next step: nothing feels it at once, but the start of all that is 
 from collections.abc import Callable, Iterator
 
 from ..core.contacts.element import ContactElement
-from ..core.description import Model
 from ..core.elements import Element
 from ..core.elements.base import BodyElement
 from ..core.laws import ForceLaw
 from ..core.model.markers import GROUND
+from ..core.multibody_model import Model
 from .variables import EVENTS, Variable, VariableTable
 
 ACCELERATIONS = ("ax", "ay", "angular_acceleration")

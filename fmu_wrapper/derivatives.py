@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from .errors import FmuError, FmuValueError
 from .variables import Variable
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..core.description import Model
 from ..core.elements import Element
 from ..core.model.markers import GROUND
+from ..core.multibody_model import Model
 from ..viewer.drawing import add_surroundings, draw, to_svg
 from .dependencies import bodies_of
 from .description_parts import About

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from .origin import Origin
 from .settings import OWN, Settings
 from .values import Values

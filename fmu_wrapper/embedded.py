@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ..core.compiled.library import REFUSED
-from ..core.description import Model
 from ..core.errors import TlismniError
 from ..core.model.open_union import meaning
+from ..core.multibody_model import Model
 from . import log as logs
 from .calls import Calls, references_in
 from .errors import ExportError, FmuValueError, Status

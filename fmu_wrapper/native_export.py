@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..core.compiled.library import LIBRARY
-from ..core.description import Model
+from ..core.multibody_model import Model
 from ..core.native import NativeError
 from ..core.native.export import image_and_parameters
 from ..core.native.parameters import Parameter, Setting

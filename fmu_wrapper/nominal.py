@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from ..core.analysis.time_scales import contact_blows
-from ..core.description import Model
 from ..core.elements.floating_body2d import FloatingBody2D
 from ..core.elements.linear_system import LinearSystem
 from ..core.errors import SimulationError, TlismniError
-from ..core.one_run import simulate
+from ..core.multibody_model import Model
+from ..core.simulate_one import simulate
 from ..core.simulation.simulation import Simulation
 from .scales import Scales, round_number
 from .settings import Settings

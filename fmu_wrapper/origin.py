@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from ..core.description import Model
 from ..core.errors import ModelError
+from ..core.multibody_model import Model
 from .errors import FmuValueError
 from .settings import Settings
 from .structure import difference

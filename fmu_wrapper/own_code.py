@@ -20,10 +20,10 @@ from types import ModuleType
 from typing import Any
 
 from ..core.compiled.cache import user_cache
-from ..core.description import Model
 from ..core.model.base import Record
 from ..core.model.open_union import OpenRecord
 from ..core.model.own_types import is_own, own_classes, place_of
+from ..core.multibody_model import Model
 from .errors import ExportError
 
 FOLDER = "own"

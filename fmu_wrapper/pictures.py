@@ -2,7 +2,7 @@
 
 import logging
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from ..viewer import show
 from ..viewer.drawing import draw, to_png, to_svg
 from ..viewer.scene import SPACE

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ..core.analysis.time_scales import contact_durations, vibration_period
-from ..core.description import Model
+from ..core.multibody_model import Model
 from .scales import Scales
 
 POINTS = 20

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from .derivatives import check_finite
 from .effective import effective
 from .errors import FmuError

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..core.description import Model
 from ..core.model.base import Record
 from ..core.model.channels import Parameter
 from ..core.model.units import parse_unit
+from ..core.multibody_model import Model
 from ..viewer.drawing.places import Places
 
 

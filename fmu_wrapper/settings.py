@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from ..core.description import Model
 from ..core.equations.system import EquationSystem
+from ..core.multibody_model import Model
 from ..core.tolerances import DEFAULT_ATOL
 from .errors import FmuValueError, SourceError
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from ..core.description import Model
 from ..core.model.own_types import own_classes, place_of
 from ..core.model.signals import MOST_DERIVATIVES
+from ..core.multibody_model import Model
 from .errors import FmuValueError, SnapshotError
 from .origin import Origin
 from .phases import Phase

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 
 MISSING = "nothing"
 

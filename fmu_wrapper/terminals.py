@@ -16,7 +16,6 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import (
     AngleDriver3D,
     AppliedForce2D,
@@ -29,6 +28,7 @@ from ..core.elements import (
     PositionDriver3D,
 )
 from ..core.model.signals import InputSignal
+from ..core.multibody_model import Model
 from .description_parts import add
 from .variables import VariableTable
 

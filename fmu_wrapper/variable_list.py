@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator
 from itertools import count
 from typing import Any
 
-from ..core.description import Model
 from ..core.errors import ModelError
 from ..core.laws import LAWS
 from ..core.methods.registry import METHODS
 from ..core.model.channels import Channel, Input, Parameter
+from ..core.multibody_model import Model
 from .origin import Origin
 from .scales import Scales, parameter_limits
 from .settings import Settings

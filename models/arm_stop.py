@@ -6,12 +6,12 @@ import numpy as np
 
 from ..core.contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
 from ..core.contacts.stop3d import AngleStop3D
-from ..core.description import Model
 from ..core.elements import Revolute3D, RigidBody3D, TorsionSpring3D
 from ..core.model.attitude import Axes, RotationVector
 from ..core.model.base import Vector3
 from ..core.model.channels import Parameter
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .frictions import contact_friction, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioError, ScenarioParameter

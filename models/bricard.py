@@ -4,11 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import Revolute3D, RigidBody3D
 from ..core.model.attitude import Axes
 from ..core.model.base import Vector3
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -1,9 +1,9 @@
 """A rubber rope on a pin swings down and falls on the ground, with a contact at each of its nodes."""
 
 from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-from ..core.description import Model
 from ..core.elements import Revolute2D
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .cables import ends, round_cable, section_parameters
 from .laws import contact_law, law_parameters
 from .parameters import ScenarioParameter

@@ -1,8 +1,8 @@
 """A rubber rope on a pin, let go horizontally at rest."""
 
-from ..core.description import Model
 from ..core.elements import Revolute2D
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .cables import ends, round_cable, section_parameters
 from .registry import scenario
 from .scenario import Scenario

@@ -1,9 +1,9 @@
 """A slender elastic beam, clamped at one end, let go horizontally: it sags far under its weight and a tip force."""
 
-from ..core.description import Model
 from ..core.elements import AppliedForce2D, Clamp2D
 from ..core.model.markers import Marker2D
 from ..core.model.signals import Constant
+from ..core.multibody_model import Model
 from .cables import ends, round_cable, section_parameters
 from .parameters import ScenarioParameter
 from .registry import scenario

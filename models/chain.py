@@ -1,9 +1,9 @@
 """A chain of slender rods, released horizontally at rest: the yardstick for speed and accuracy."""
 
-from ..core.description import Model
 from ..core.elements import Revolute2D, RigidBody2D
 from ..core.model.base import Vector2
 from ..core.model.markers import GROUND, Marker2D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -3,9 +3,9 @@
 import math
 
 from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ..core.description import Model
 from ..core.elements import Revolute2D, RigidBody2D
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario

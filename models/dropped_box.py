@@ -3,11 +3,11 @@
 from ..core.contacts.contact3d import HalfSpace3D
 from ..core.contacts.cornered3d import Box3D
 from ..core.contacts.group2d import contacts_between
-from ..core.description import Model
 from ..core.elements import RigidBody3D
 from ..core.model.attitude import RotationVector
 from ..core.model.channels import Parameter
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .frictions import contact_friction, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter

@@ -1,7 +1,7 @@
 """A free body that turns about nearly its middle axis of inertia, and so turns over again and again."""
 
-from ..core.description import Model
 from ..core.elements import RigidBody3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

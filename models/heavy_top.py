@@ -1,9 +1,9 @@
 """A heavy top on a fixed pivot that spins fast: the benchmark of Geradin and Cardona."""
 
-from ..core.description import Model
 from ..core.elements import RigidBody3D, Spherical3D
 from ..core.model.attitude import RotationVector, rotation_matrix
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -3,7 +3,6 @@
 import math
 
 from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ..core.description import Model
 from ..core.elements import (
     Attachment,
     BodyElement,
@@ -16,6 +15,7 @@ from ..core.elements import (
 )
 from ..core.laws import ContactLaw, Hertz, NewtonImpact
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .laws import law_model_parameters
 from .parameters import ScenarioParameter
 from .registry import scenario

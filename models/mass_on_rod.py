@@ -1,11 +1,11 @@
 """A rigid mass strikes the free end of an elastic rod whose other end is fixed."""
 
 from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-from ..core.description import Model
 from ..core.elements import AxialRod, CoordinateDriver, LinearSystem
 from ..core.elements.axial_rod import MassMatrix
 from ..core.laws import NewtonImpact
 from ..core.model.signals import Polynomial
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .rods import rod_options, rod_parameters

@@ -3,11 +3,11 @@
 import math
 
 from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D
-from ..core.description import Model
 from ..core.elements import Distance2D, PointMass2D
 from ..core.laws import NewtonImpact
 from ..core.model.channels import Parameter
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario

@@ -2,9 +2,9 @@
 
 import math
 
-from ..core.description import Model
 from ..core.elements import Distance2D, PointMass2D
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

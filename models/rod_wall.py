@@ -1,10 +1,10 @@
 """An elastic rod flies against a rigid wall: waves make it rebound."""
 
 from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-from ..core.description import Model
 from ..core.elements import AxialRod
 from ..core.elements.axial_rod import MassMatrix
 from ..core.laws import NewtonImpact
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .rods import rod_options, rod_parameters

@@ -2,10 +2,10 @@
 
 import math
 
-from ..core.description import Model
 from ..core.elements import RigidBody3D, RollingDisk3D
 from ..core.model.attitude import Axes
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from ..core.tolerances import DEFAULT_ATOL
 from ..viewer.sketches import Sketch
 

@@ -4,9 +4,9 @@ import cmath
 import math
 from dataclasses import dataclass
 
-from ..core.description import Model
 from ..core.elements import Bushing2D, Prismatic2D, Revolute2D, RigidBody2D
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -3,9 +3,9 @@
 import math
 
 from ..core.contacts.contact3d import Sphere3D, SphereOnSphere3D
-from ..core.description import Model
 from ..core.elements import Distance3D, PointMass3D
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .frictions import contact_friction, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter

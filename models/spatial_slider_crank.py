@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import Prismatic3D, Revolute3D, RigidBody3D, Spherical3D, Universal3D
 from ..core.model.attitude import Axes
 from ..core.model.base import Vector3
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioError, ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-from ..core.description import Model
 from ..core.elements import Clamp2D, FloatingBeam2D, LinearSystem, MaterialPoint2D, PointMass2D
 from ..core.laws import Hertz
 from ..core.laws.stiffness import Material, sphere_on_plane
 from ..core.model.markers import Marker2D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

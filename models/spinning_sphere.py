@@ -1,9 +1,9 @@
 """A sphere is thrown with spin on a floor: it bounces, slides and rolls."""
 
 from ..core.contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
-from ..core.description import Model
 from ..core.elements import RigidBody3D
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .frictions import contact_friction, friction_model_parameter, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter

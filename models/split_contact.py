@@ -7,11 +7,11 @@ contact's force and gives the hammer's motion; the half `split_wall` takes that 
 import math
 
 from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ..core.description import Model
 from ..core.elements import AppliedForce2D, Bushing2D, Joint, MovingFrame2D, Prismatic2D, RigidBody2D
 from ..core.model.channels import Input
 from ..core.model.markers import Marker2D
 from ..core.model.signals import InputSignal
+from ..core.multibody_model import Model
 from .laws import LAW_NAMES, contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter
 from .registry import scenario

@@ -3,10 +3,10 @@
 import math
 
 from ..core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from ..core.description import Model
 from ..core.elements import CoordinateDriver, PointMass2D, Prismatic2D, RigidBody2D, SpringDamper2D
 from ..core.model.markers import Marker2D
 from ..core.model.signals import Polynomial
+from ..core.multibody_model import Model
 from .frictions import contact_friction, friction_model_parameter, friction_parameters
 from .laws import contact_law, law_model_parameters, law_parameters
 from .parameters import ScenarioParameter

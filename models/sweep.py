@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.compiled_model import CompiledModel, compile_model
 from ..core.errors import ModelError
-from ..core.one_run import check_times
+from ..core.simulate_one import check_times
 from ..core.simulation.simulation import Simulation
 from ..core.sweeps.problem import (
     KEPT_MODELS,

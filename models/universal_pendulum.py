@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import RigidBody3D, Universal3D
 from ..core.model.attitude import RotationVector, rotation_matrix
 from ..core.model.markers import Marker3D
+from ..core.multibody_model import Model
 from .parameters import ScenarioParameter
 from .registry import scenario
 from .scenario import Scenario

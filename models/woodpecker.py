@@ -1,11 +1,11 @@
 """The woodpecker toy: a bird on a spring hops down a pole, held and let go by the friction of its sleeve."""
 
 from ..core.contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-from ..core.description import Model
 from ..core.elements import LinearSystem
 from ..core.laws import NewtonImpact
 from ..core.laws.friction import CoulombFriction
 from ..core.model.channels import Parameter
+from ..core.multibody_model import Model
 from ..viewer.sketches import Sketch
 from .frictions import friction_model_parameter
 from .parameters import ScenarioParameter

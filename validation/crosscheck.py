@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ..core.description import Model
 from ..core.laws import ImpactLaw
+from ..core.multibody_model import Model
 from ..models import Scenario, load
 from .comparisons.common import Comparison, Progress, Row, Task
 from .comparisons.constraint_contact import compare_constraints

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..core import Result
 from ..core.contacts.contact2d import DiskOnHalfPlane2D
-from ..core.description import Model
 from ..core.elements import AxialRod, Cable2D, FlexibleBody, LinearSystem, MaterialPoint2D, SpatialFrame
 from ..core.model.marker_channels3d import points_in_space
 from ..core.model.markers import GROUND, Marker2D
+from ..core.multibody_model import Model
 from ..viewer.drawing.view import View, star
 from .rod_drawing import rod_lines
 

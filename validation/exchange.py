@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import Cable2D, FloatingBeam2D, MaterialPoint2D
+from ..core.multibody_model import Model
 from .errors import NotTranslatable
 
 STIFF_IN_LENGTH = 1e3

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..core.description import Model
+from ..core.multibody_model import Model
 from .errors import NotTranslatable
 from .exudyn_import import import_exudyn
 from .translation import Build, translate

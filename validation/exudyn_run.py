@@ -10,9 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import Cable2D, FlexibleBody
 from ..core.laws.hunt_crossley import HuntCrossleyFamily
+from ..core.multibody_model import Model
 from .errors import ExudynFailed
 from .exudyn_model import build_exudyn_model
 from .translation import Build

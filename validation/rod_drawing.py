@@ -4,8 +4,8 @@ import numpy as np
 
 from ..core import Result
 from ..core.contacts.coordinate_contact import CoordinateContact
-from ..core.description import Model
 from ..core.elements import AxialRod
+from ..core.multibody_model import Model
 
 VISIBLE = 0.08
 """The largest displacement as drawn, in parts of the shortest rod."""

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..core.description import Model
 from ..core.errors import ModelError
+from ..core.multibody_model import Model
 from .build import scene_of_result, scene_of_start
 from .fields import CrossSection
 from .page_text import page_text

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import Cable3D, FlexibleBody, PlanarFrame
 from ..core.errors import ModelError
 from ..core.model.markers import GROUND
+from ..core.multibody_model import Model
 from . import mechanical  # noqa: F401  (importing it teaches `place` its elements)
 from .bodies import Stage, add_bodies, add_dot, add_output
 from .drawing.shapes import Circle, Point

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..core.contacts.angle_stop2d import AngleStop2D
-from ..core.contacts.box2d import DiskOnBox2D
+from ..core.contacts.disk_on_box2d import DiskOnBox2D
 from ..core.contacts.polygon2d import DiskOnPolygon2D
 from ..core.contacts.ring2d import DiskInRing2D
 from ..core.contacts.rope2d import Rope2D

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.description import Model
 from ..core.elements import BodyElement, FlexibleBody, PlanarFrame
 from ..core.elements.flexible_body import Section
 from ..core.flexible.section_loads import places
 from ..core.interpolation import Between
 from ..core.model.markers import GROUND, Marker2D
+from ..core.multibody_model import Model
 from .drawing.places import Places
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core.description import Model
 from ..core.elements import MaterialPoint2D
 from ..core.interpolation import Between
+from ..core.multibody_model import Model
 from .scene import Floats, Track
 
 if TYPE_CHECKING:

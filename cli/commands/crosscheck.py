@@ -7,18 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import Failure, one_line_errors
-from ..options import (
-    Atol,
-    Debug,
-    EndTime,
-    ExudynStep,
-    Json,
-    MethodName,
-    MethodOption,
-    ReportFolder,
-    Rtol,
-    Set,
-)
+from ..options import Atol, Debug, EndTime, ExudynStep, Json, MethodName, MethodOption, ReportFolder, Rtol, Set
 from ..screen import compile_notice, number, print_json, print_table, say, status_line, stdout
 from ..targets import check_folder
 

@@ -6,20 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import one_line_errors
-from ..options import (
-    Atol,
-    Debug,
-    EndTime,
-    Every,
-    Json,
-    MethodName,
-    MethodOption,
-    Rtol,
-    Set,
-    Source,
-    Step,
-    check_suffix,
-)
+from ..options import Atol, Debug, EndTime, Every, Json, MethodName, MethodOption, Rtol, Set, Source, Step, check_suffix
 from ..screen import compile_notice, number, print_json, print_table, progress_bar, say, shortened
 from ..targets import check_file, check_folder
 

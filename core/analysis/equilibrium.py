@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled_model import compile_model
-from ..description import Model
+from ..multibody_model import Model
 from ..simulation.simulation import Simulation
-from ..state.modes import ACTIVE, CLOSED, MODE
+from ..state.modes import ACTIVE, CLOSED
 from .at_rest import channel_values, run_of
 from .pseudo_transient import Creep
 
@@ -93,7 +93,7 @@ def static_equilibrium(system: Any, t: float = 0.0, start_values: dict[str, floa
     row[layout.q] = arrays["q"][:n]
     states = {*range(layout.q.start, layout.v.stop)}
     start = {name: float(row[column]) for name, column in plain.items() if column in states}
-    closed = tuple(c.name for k, c in enumerate(sim.assembly.contacts) if sim.memory[k, MODE] in (CLOSED, ACTIVE))
+    closed = tuple(c.name for k, c in enumerate(sim.assembly.contacts) if sim.memory.mode[k] in (CLOSED, ACTIVE))
     return Equilibrium(
         system, names, values, arrays["q"][:n].copy(), arrays["lam"][active].copy(), start, search.iterations,
         search.unbalanced, closed, sim,

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..batch import in_threads
 from ..compiled_model import CompiledModel, compile_model
 from ..errors import ModelError, SimulationError, TlismniError
-from ..one_run import check_times
+from ..simulate_one import check_times
+from ..worker_threads import in_threads
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..assembly.numbering import ModelNumbering
 from ..contacts.disk_on_line import DiskOnLine2D
-from ..description import Model
+from ..multibody_model import Model
 
 
 @dataclass(frozen=True)

@@ -31,10 +31,10 @@ def speed_scale(v: Any, n: int) -> float:
 
 
 @internal
-def scatter(ws: Any, rows: Any, cols: Any, s: Any, jacobian: Any, factor: float) -> None:
+def scatter(workspace: Any, rows: Any, cols: Any, s: Any, jacobian: Any, factor: float) -> None:
     """s += factor (upper left block of the matrix last evaluated); jacobian = Phi_q."""
-    n = ws.n
-    values = vec(ws.values, ws.n_values)
+    n = workspace.n
+    values = vec(workspace.values, workspace.n_values)
     for e in range(len(rows)):
         i, j = rows[e], cols[e]
         if i < n and j < n:
@@ -44,14 +44,14 @@ def scatter(ws: Any, rows: Any, cols: Any, s: Any, jacobian: Any, factor: float)
 
 
 @internal
-def jacobian_rates(ws: Any, rows: Any, cols: Any, colours: Any, rate: Any) -> None:
+def jacobian_rates(workspace: Any, rows: Any, cols: Any, colours: Any, rate: Any) -> None:
     """B = (Phi_q v + Phi_t)_q at the current point, in the pattern of Phi_q (m_act, n).
 
     Columns of one colour share no row, so that one probe serves them all.
     """
-    n, m = ws.n, ws.m_act
-    v, a, phidd = vec(ws.v, n), vec(ws.a, n), vec(ws.phidd, ws.m_ext)
-    active, seed = ivec(ws.active, m), vec(ws.rhs, n)
+    n, m = workspace.n, workspace.m_act
+    v, a, phidd = vec(workspace.v, n), vec(workspace.a, n), vec(workspace.phidd, workspace.m_ext)
+    active, seed = ivec(workspace.active, m), vec(workspace.rhs, n)
     size = speed_scale(v, n)
     for i in range(n):
         seed[i], a[i] = v[i], 0.0
@@ -64,7 +64,7 @@ def jacobian_rates(ws: Any, rows: Any, cols: Any, colours: Any, rate: Any) -> No
             for j in range(n):
                 if colours[j] == c:
                     v[j] = seed[j] + (size if sign == 0 else -size)
-            call_evaluate(ws.evaluate_function, ws, RESIDUAL)
+            call_evaluate(workspace.evaluate_function, workspace, RESIDUAL)
             for e in range(len(rows)):
                 i, j = rows[e] - n, cols[e]
                 if i >= 0 and j < n and colours[j] == c:
@@ -75,7 +75,8 @@ def jacobian_rates(ws: Any, rows: Any, cols: Any, colours: Any, rate: Any) -> No
 
 @compiled
 def linearise(
-    ws: Any, ms: Any, times: Any, rows: Any, cols: Any, colours: Any, mass: Any, k: Any, d: Any, phi_q: Any, rate: Any,
+    workspace: Any, method: Any, times: Any, rows: Any, cols: Any, colours: Any, mass: Any, k: Any, d: Any,
+    phi_q: Any, rate: Any,
     points: Any,
 ) -> int:  # fmt: skip
     """The system at `times` (N,) within the newest step of the run.
@@ -83,38 +84,38 @@ def linearise(
     Writes mass, k, d (N, n, n), phi_q, rate (N, m_act, n) and points (N, 2n), the coordinates and velocities there.
     Returns 0, or 1 + the number of the point that could not be projected onto the constraints.
     """
-    n = ws.n
-    q, v = vec(ws.q, n), vec(ws.v, n)
+    n = workspace.n
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
     for l in range(len(times)):
-        if query(ws, ms, times[l]) != OK:
+        if query(workspace, method, times[l]) != OK:
             return l + 1
         for i in range(n):
             points[l, i], points[l, n + i] = q[i], v[i]
         mass[l], k[l], d[l] = 0.0, 0.0, 0.0
-        evaluate_tangent(ws, 0.0, 0.0)
-        scatter(ws, rows, cols, mass[l], phi_q[l], 1.0)
-        evaluate_tangent(ws, 1.0, 0.0)
-        scatter(ws, rows, cols, k[l], phi_q[l], 1.0)
-        evaluate_tangent(ws, 0.0, 1.0)
-        scatter(ws, rows, cols, d[l], phi_q[l], 1.0)
+        evaluate_tangent(workspace, 0.0, 0.0)
+        scatter(workspace, rows, cols, mass[l], phi_q[l], 1.0)
+        evaluate_tangent(workspace, 1.0, 0.0)
+        scatter(workspace, rows, cols, k[l], phi_q[l], 1.0)
+        evaluate_tangent(workspace, 0.0, 1.0)
+        scatter(workspace, rows, cols, d[l], phi_q[l], 1.0)
         for i in range(n):
             for j in range(n):
                 k[l, i, j] -= mass[l, i, j]
                 d[l, i, j] -= mass[l, i, j]
-        jacobian_rates(ws, rows, cols, colours, rate[l])
+        jacobian_rates(workspace, rows, cols, colours, rate[l])
     return 0
 
 
 @compiled
-def all_rows(ws: Any, jacobian: Any, rate: Any, remainder: Any) -> None:
+def all_rows(workspace: Any, jacobian: Any, rate: Any, remainder: Any) -> None:
     """Every row of the constraints, those of open contacts too, at the current point; a is set to zero.
 
     Writes jacobian (m, n), rate B (m, n) and remainder (m,): the derivative of phid = Phi_q v + Phi_t by t alone,
     phidd - B v with a = 0.
     """
-    n, m = ws.n, ws.m_ext - 1
-    v, a = vec(ws.v, n), vec(ws.a, n)
-    phid, phidd = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
+    n, m = workspace.n, workspace.m_ext - 1
+    v, a = vec(workspace.v, n), vec(workspace.a, n)
+    phid, phidd = vec(workspace.phid, workspace.m_ext), vec(workspace.phidd, workspace.m_ext)
     size = speed_scale(v, n)
     for i in range(n):
         a[i] = 0.0
@@ -123,14 +124,14 @@ def all_rows(ws: Any, jacobian: Any, rate: Any, remainder: Any) -> None:
         for sign in range(2):
             factor = 1.0 if sign == 0 else -1.0
             v[j] = kept + factor * size
-            call_evaluate(ws.evaluate_function, ws, RESIDUAL)
+            call_evaluate(workspace.evaluate_function, workspace, RESIDUAL)
             for i in range(m):
                 if sign == 0:
                     jacobian[i, j] = rate[i, j] = 0.0
                 jacobian[i, j] += 0.5 * factor * phid[i] / size
                 rate[i, j] += 0.25 * factor * phidd[i] / size
         v[j] = kept
-    evaluate_residuals(ws)
+    evaluate_residuals(workspace)
     for i in range(m):
         remainder[i] = phidd[i]
         for j in range(n):
@@ -138,11 +139,11 @@ def all_rows(ws: Any, jacobian: Any, rate: Any, remainder: Any) -> None:
 
 
 @compiled
-def gap_hessian(ws: Any, row: int, support: Any, hessian: Any) -> None:
+def gap_hessian(workspace: Any, row: int, support: Any, hessian: Any) -> None:
     """Second derivative by q (n, n) of Phi's `row`, whose coordinates are `support`: polar form of phidd; v and a are
     set to zero."""
-    n = ws.n
-    v, a, phidd = vec(ws.v, n), vec(ws.a, n), vec(ws.phidd, ws.m_ext)
+    n = workspace.n
+    v, a, phidd = vec(workspace.v, n), vec(workspace.a, n), vec(workspace.phidd, workspace.m_ext)
     for i in range(n):
         v[i], a[i] = 0.0, 0.0
     for p in range(len(support)):
@@ -154,35 +155,35 @@ def gap_hessian(ws: Any, row: int, support: Any, hessian: Any) -> None:
                 sign = 1.0 if turn < 2 else -1.0
                 v[i] += 1.0 if turn % 2 == 0 else -1.0
                 v[j] += sign if turn % 2 == 0 else -sign
-                call_evaluate(ws.evaluate_function, ws, RESIDUAL)
+                call_evaluate(workspace.evaluate_function, workspace, RESIDUAL)
                 total += sign * phidd[row]
                 v[i], v[j] = 0.0, 0.0
             hessian[i, j] = hessian[j, i] = 0.125 * total
 
 
 @compiled
-def matrix_at(ws: Any, rows: Any, cols: Any, s: Any, phi_q: Any, c_q: float) -> None:
+def matrix_at(workspace: Any, rows: Any, cols: Any, s: Any, phi_q: Any, c_q: float) -> None:
     """Dense blocks M + c_q K (n, n) and Phi_q (m_act, n) at the current point."""
     s[:, :] = 0.0
-    evaluate_tangent(ws, c_q, 0.0)
-    scatter(ws, rows, cols, s, phi_q, 1.0)
+    evaluate_tangent(workspace, c_q, 0.0)
+    scatter(workspace, rows, cols, s, phi_q, 1.0)
 
 
 @compiled
-def tangent_rate(ws: Any, ms: Any, times: Any, rows: Any, cols: Any, out: Any) -> None:
+def tangent_rate(workspace: Any, method: Any, times: Any, rows: Any, cols: Any, out: Any) -> None:
     """(M e_k)_q v as the columns of out (N, n, n) at `times` (N,): K is affine in the accelerations."""
-    n = ws.n
-    v, a = vec(ws.v, n), vec(ws.a, n)
+    n = workspace.n
+    v, a = vec(workspace.v, n), vec(workspace.a, n)
     for l in range(len(times)):
-        query(ws, ms, times[l])
+        query(workspace, method, times[l])
         out[l] = 0.0
         for column in range(n):
             for turn in range(2):
                 for i in range(n):
                     a[i] = 0.0
                 a[column] = 1.0 - turn
-                evaluate_tangent(ws, 1.0, 0.0)
-                values = vec(ws.values, ws.n_values)
+                evaluate_tangent(workspace, 1.0, 0.0)
+                values = vec(workspace.values, workspace.n_values)
                 for e in range(len(rows)):
                     if rows[e] < n and cols[e] < n:
                         out[l, rows[e], column] += (1.0 - 2.0 * turn) * values[e] * v[cols[e]]

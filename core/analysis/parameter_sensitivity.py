@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled_model import CompiledModel, compile_model
 from ..errors import ModelError, SimulationError
-from ..many_runs import simulate_many
+from ..simulate_batch import simulate_many
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from ..assembly.projection import bring_to_rest
 from ..errors import ConsistencyError, SimulationError
 from ..laws import ForceLaw
 from ..simulation.simulation import Simulation
-from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, IDLE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import ACTIVE, CLOSED, IDLE, OPEN
 from .at_rest import place, tangent
 
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Creep:
         self.iterations, self.unbalanced = 0, np.inf
         arrays, n = sim.workspace.arrays, sim.assembly.n
         # from rest: forces that depend on speeds, and what impacts did at the start, have no part in this
-        sim.memory[:, MODE], sim.memory[:, SLIDE], sim.memory[:, RATIO] = OPEN, IDLE, 0.0
+        sim.memory.mode, sim.memory.slide_mode, sim.memory.friction_ratio = OPEN, IDLE, 0.0
         self.released: dict[int, int] = {}
         q = arrays["q"][:n].copy()
         sim.use_modes(accelerations=False)
@@ -147,7 +147,7 @@ class Creep:
         may be another."""
         sim = self.sim
         for k, contact in enumerate(sim.assembly.contacts):
-            if sim.memory[k, MODE] == OPEN and isinstance(contact.law, ForceLaw):
+            if sim.memory.mode[k] == OPEN and isinstance(contact.law, ForceLaw):
                 size = float(sim.workspace.arrays["row_scale"][contact.row])
                 if sim.gap(k) < -ENTRY * size:
                     return True
@@ -158,24 +158,24 @@ class Creep:
         sim = self.sim
         evaluate_residuals(sim.workspace.record)
         every = range(len(sim.assembly.contacts))
-        return [k for k in every if sim.memory[k, MODE] == OPEN and sim.gap(k) < 0.0]
+        return [k for k in every if sim.memory.mode[k] == OPEN and sim.gap(k) < 0.0]
 
     def _choose(self, closing: list[int]) -> bool:
         """Let these contacts act; those of force laws whose shapes have come apart act no more."""
-        sim, before = self.sim, self.sim.memory[:, MODE].copy()
+        sim, before = self.sim, self.sim.memory.mode.copy()
         for k in closing:
             law = sim.assembly.contacts[k].law
-            sim.memory[k, MODE] = ACTIVE if isinstance(law, ForceLaw) else CLOSED
+            sim.memory.mode[k] = ACTIVE if isinstance(law, ForceLaw) else CLOSED
             size = float(sim.workspace.arrays["row_scale"][sim.assembly.contacts[k].row])
             if isinstance(law, ForceLaw):
-                sim.memory[k, APPROACH_SPEED] = law.least_approach_speed(sim.scales.rate * size)
+                sim.memory.approach_speed[k] = law.least_approach_speed(sim.scales.rate * size)
         for k in range(len(sim.assembly.contacts)):
-            if sim.memory[k, MODE] == ACTIVE and sim.gap(k) > 0.0:
-                sim.memory[k, MODE] = OPEN
-        if np.array_equal(before, sim.memory[:, MODE]):
+            if sim.memory.mode[k] == ACTIVE and sim.gap(k) > 0.0:
+                sim.memory.mode[k] = OPEN
+        if np.array_equal(before, sim.memory.mode):
             return False
         q = self._point()[0]
-        if not self._take_on(closing) and np.array_equal(before, sim.memory[:, MODE]):
+        if not self._take_on(closing) and np.array_equal(before, sim.memory.mode):
             place(sim, q, np.zeros(len(sim.workspace.structure.active)))
             return False
         place(sim, q, np.zeros(len(sim.workspace.structure.active)))
@@ -193,14 +193,14 @@ class Creep:
         except ConsistencyError:
             if not closing:
                 raise
-        modes = sim.memory[closing, MODE].copy()
-        sim.memory[closing, MODE] = OPEN
+        modes = sim.memory.mode[closing].copy()
+        sim.memory.mode[closing] = OPEN
         for k, mode in sorted(zip(closing, modes, strict=True), key=lambda pair: sim.gap(pair[0])):
-            sim.memory[k, MODE] = mode
+            sim.memory.mode[k] = mode
             try:
                 sim.use_modes(accelerations=False)
             except ConsistencyError:
-                sim.memory[k, MODE] = OPEN
+                sim.memory.mode[k] = OPEN
         sim.use_modes(accelerations=False)
         return False
 
@@ -212,7 +212,7 @@ class Creep:
         pulls = [
             (float(monitor[k]), k)
             for k in range(len(sim.assembly.contacts))
-            if sim.memory[k, MODE] == CLOSED and monitor[k] < -BALANCED * largest
+            if sim.memory.mode[k] == CLOSED and monitor[k] < -BALANCED * largest
         ]
         if not pulls:
             return False
@@ -220,7 +220,7 @@ class Creep:
         self.released[k] = self.released.get(k, 0) + 1
         if self.released[k] > len(sim.assembly.contacts) + 3:
             raise self._lost(f"contact '{sim.assembly.contacts[k].name}' closes and opens for ever")
-        sim.memory[k, MODE] = OPEN
+        sim.memory.mode[k] = OPEN
         q = self._point()[0]
         sim.use_modes(accelerations=False)
         place(sim, q, np.zeros(len(sim.workspace.structure.active)))

@@ -29,7 +29,7 @@ from ..laws import ImpactLaw
 from ..rounding import CONTINUOUS
 from ..simulation.simulation import Simulation
 from ..stage.accelerations import solve_accelerations
-from ..state.modes import CLOSED, MODE
+from ..state.modes import CLOSED
 from ..state.workspace_records import OK
 from .layout import Layout, Layouts, mass_by_time
 from .linearise import all_rows, gap_hessian
@@ -90,7 +90,7 @@ def cross(sim: Simulation, layouts: Layouts, dq: Floats, dv: Floats) -> Crossing
         and for an impact that was not Newton's without friction.
     """
     n, arrays = sim.assembly.n, sim.workspace.arrays
-    striking = next((k for k in sim.pending if sim.memory[k, MODE] != CLOSED), None)
+    striking = next((k for k in sim.pending if sim.memory.mode[k] != CLOSED), None)
     look(sim)
     if solve_accelerations(sim.workspace.record) != OK:
         t = sim.t_internal
@@ -107,7 +107,7 @@ def cross(sim: Simulation, layouts: Layouts, dq: Floats, dv: Floats) -> Crossing
     impacts, log_determinant = 0, 0.0
     while True:
         seen = len(sim.events)
-        closed = {c.name for c, mode in zip(sim.assembly.contacts, sim.memory[:, MODE], strict=False) if mode == CLOSED}
+        closed = {c.name for c, mode in zip(sim.assembly.contacts, sim.memory.mode, strict=False) if mode == CLOSED}
         sim.step(sim.t_internal)
         new = sim.events[seen:]
         # closed contacts that carry their share of the blow are constraints, like joints

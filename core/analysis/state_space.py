@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import ModelError
 from ..simulation.simulation import Simulation
-from ..state.modes import ACTIVE, MODE
+from ..state.modes import ACTIVE
 from .at_rest import Matrices, channel_values, loads, matrices
 from .eigenmodes import resting
 from .equilibrium import Equilibrium
@@ -180,7 +180,7 @@ class _Directions:
         self._put(k, reach * 1e-3)
         for i, gap in enumerate(before):
             change = abs(sim.gap(i) - gap) / (reach * 1e-3)
-            if sim.memory[i, MODE] == ACTIVE and change * reach > SHALLOW * abs(gap):
+            if sim.memory.mode[i] == ACTIVE and change * reach > SHALLOW * abs(gap):
                 reach = SHALLOW * abs(gap) / change
         return reach / WEIGHTS[-1][0]
 

@@ -45,8 +45,18 @@ def _varies(mass: Any) -> bool:
 
 @compiled_unlocked
 def fly(
-    ws: Any, ms: Any, lc: Any, most: int, layout: Any, room: Any, work: Any, dq: Any, dv: Any, growth: Any, totals: Any
-) -> int:  # fmt: skip
+    workspace: Any,
+    method: Any,
+    loop: Any,
+    most: int,
+    layout: Any,
+    room: Any,
+    work: Any,
+    dq: Any,
+    dv: Any,
+    growth: Any,
+    totals: Any,
+) -> int:
     """Up to `most` steps, as `run` makes them, and the variations carried over each.
 
     layout : (rows, cols, colours, scale). room : (times, M, K, D, Phi_q, B, points, zeros, r, old dq,
@@ -62,9 +72,9 @@ def fly(
     capacity = (len(times) - 2) // STAGES
     n, columns = dq.shape
     for _ in range(most):
-        t0 = history_time(ms, 0)
-        code = run(ws, ms, lc, 1)
-        t1 = history_time(ms, 0)
+        t0 = history_time(method, 0)
+        code = run(workspace, method, loop, 1)
+        t1 = history_time(method, 0)
         if t1 > t0:
             for i in range(n):
                 for c in range(columns):
@@ -76,7 +86,8 @@ def fly(
                 count = STAGES * substeps + 2
                 _times(t0, t1, substeps, times)
                 failed = linearise(
-                    ws, ms, times[:count], rows, cols, colours, mass[:count], k[:count], d[:count], phi_q[:count],
+                    workspace, method, times[:count], rows, cols, colours, mass[:count], k[:count], d[:count],
+                    phi_q[:count],
                     rate[:count], points[:count],
                 )  # fmt: skip
                 if failed != 0 or _varies(mass[:count]):

@@ -220,9 +220,9 @@ class Variation:
         sim, n, m, count = self.sim, layout.n, len(layout.active), len(times)
         shapes = ((count, n, n),) * 3 + ((count, m, n),) * 2 + ((count, 2 * n),)
         found = tuple(np.zeros(shape) for shape in shapes)
-        ws, ms = sim.workspace.record, sim._method.record
+        workspace, method = sim.workspace.record, sim._method.record
         for attempt in range(2):
-            failed = linearise(ws, ms, times, layout.rows, layout.cols, layout.colours, *found)
+            failed = linearise(workspace, method, times, layout.rows, layout.cols, layout.colours, *found)
             if failed == 0:
                 return found
             if attempt == 0:

@@ -213,7 +213,7 @@ def _of_one_kind() -> Iterator[tuple[Any, Any]]:
             arguments = tuple(inspect.signature(value.py_func).parameters)
             if arguments == ("job", "t", "b"):
                 yield value, KERNEL_SIGNATURE
-            elif name.endswith("_step") and name[0] != "_" and arguments == ("ws", "ms", "h"):
+            elif name.endswith("_step") and name[0] != "_" and arguments == ("workspace", "method", "h"):
                 yield value, STEP_SIGNATURE
             elif name.startswith("solve_") and name.endswith("_stage"):
                 yield value, STAGE_SIGNATURE

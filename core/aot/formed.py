@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from ..contacts.angle_stop2d import AngleStop2D
-from ..contacts.box2d import Box2D, DiskOnBox2D
 from ..contacts.contact2d import Disk2D
+from ..contacts.disk_on_box2d import Box2D, DiskOnBox2D
 from ..contacts.polygon2d import DiskOnPolygon2D, Polygon2D
 from ..contacts.ring2d import DiskInRing2D, Ring2D
 from ..contacts.rope2d import Rope2D

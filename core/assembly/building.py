@@ -12,55 +12,49 @@ from ..compiled.views import ivec
 from ..linalg import lu_at
 from ..linalg.analyze import words_of
 from ..linalg.record import INDEX, SCRATCH, VALUES
-from ..state.workspace_records import (
-    OF_D,
-    OF_KKT,
-    OK,
-    REALS,
-    WANT_ROOM,
-    WORDS,
-    building_at,
-    partition_at,
-    structure_at,
-)
-from .compatibility import begin_sharing, list_sharing
+from ..state.workspace_records import OF_D, OF_KKT, OK, REALS, WANT_ROOM, WORDS, building_at, partition_at, structure_at
 from .entries import list_entries, size_of_entries
+from .redundant_reactions import begin_sharing, list_sharing
 from .serials import next_serial, same_numbers
 from .structure_switch import HELD, KINDS, STUCK, STUCK_TWICE, take_structure
 from .structure_tables import write_structure
 
 
 @compiled
-def engage_wanted(ws: Any) -> int:
+def engage_wanted(workspace: Any) -> int:
     """Take the structure of the codes that are `wanted`, built if there is none: OK, or WANT_ROOM with nothing
     changed."""
-    b = building_at(ws.building)
+    b = building_at(workspace.building)
     places = ivec(b.structures, b.n_slots)
     oldest, free = -1, 0
     for i in range(b.n_slots):
-        st = structure_at(places[i])
-        if st.built != 0 and st.dropped == b.dropped and same_numbers(st.codes, ws.wanted, b.n_contacts):
-            take_structure(ws, places[i])
-            st.used = next_serial(b)
+        structure = structure_at(places[i])
+        if (
+            structure.built != 0
+            and structure.dropped == b.dropped
+            and same_numbers(structure.codes, workspace.wanted, b.n_contacts)
+        ):
+            take_structure(workspace, places[i])
+            structure.used = next_serial(b)
             return OK
-        if places[i] == ws.structure or places[i] == ws.kept:
+        if places[i] == workspace.structure or places[i] == workspace.kept:
             continue
-        age = st.used if st.built != 0 else -1
+        age = structure.used if structure.built != 0 else -1
         if free == 0 or age < oldest:
             oldest, free = age, places[i]
-    st = structure_at(free)
-    st.built = 0
-    status = _build(ws, b, st)
+    structure = structure_at(free)
+    structure.built = 0
+    status = _build(workspace, b, structure)
     if status == OK:
-        st.used = next_serial(b)
-        take_structure(ws, free)
+        structure.used = next_serial(b)
+        take_structure(workspace, free)
     return int(status)
 
 
 @internal
-def _build(ws: Any, b: Any, st: Any) -> int:
+def _build(workspace: Any, b: Any, structure: Any) -> int:
     n, m, scratch, needs = b.n, b.m, ivec(b.scratch, 2), ivec(b.needs, 8)
-    raw, table = size_of_entries(ws, b)
+    raw, table = size_of_entries(workspace, b)
     wide = n + 2 * m + 2
     size = 4 * (m + 1) + 5 * raw + wide
     if size > scratch[1]:
@@ -70,8 +64,8 @@ def _build(ws: Any, b: Any, st: Any) -> int:
     active, matrix_row = ivec(at, m + 1), ivec(at + 8 * (m + 1), m + 1)
     matrix_col, sharing_start = ivec(at + 16 * (m + 1), m + 1), ivec(at + 24 * (m + 1), m + 1)
     at += 32 * (m + 1)
-    m_act, m_held, n_implied, left_out = _find_rows(ws, b, active, matrix_row, matrix_col)
-    n_sharing = list_sharing(ws, b, m_act, n_implied, active, matrix_col, sharing_start, sharing_start, False)
+    m_act, m_held, n_implied, left_out = _find_rows(workspace, b, active, matrix_row, matrix_col)
+    n_sharing = list_sharing(workspace, b, m_act, n_implied, active, matrix_col, sharing_start, sharing_start, False)
     raw += n_sharing
     size += 6 * n_sharing
     if size > scratch[1]:
@@ -82,9 +76,9 @@ def _build(ws: Any, b: Any, st: Any) -> int:
     row, col = ivec(at, raw), ivec(at + 8 * raw, raw)
     by_col, order, slot = ivec(at + 16 * raw, raw), ivec(at + 24 * raw, raw), ivec(at + 32 * raw, raw)
     count = ivec(at + 40 * raw, wide)
-    list_sharing(ws, b, m_act, n_implied, active, matrix_col, sharing_start, sharing, True)
+    list_sharing(workspace, b, m_act, n_implied, active, matrix_col, sharing_start, sharing, True)
     full = n + m_act + n_implied
-    first = list_entries(ws, b, matrix_row, matrix_col, row, col)
+    first = list_entries(workspace, b, matrix_row, matrix_col, row, col)
     for p in range(n_implied):
         for e in range(sharing_start[p], sharing_start[p + 1]):
             row[first + e], col[first + e] = n + m_act + p, n + sharing[e]
@@ -108,10 +102,10 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         + m_act + 9 * n_jacobian + words_of(m_act, n_jacobian) + words_of(m_held, n_jacobian) + 8
     )  # fmt: skip
     reals = total + 1 + 2 * n_sharing + m_act + 6 * full + 3 * m_act + 3 * m_held + 8
-    enough = _need(needs, WORDS, words, st.words_room)
-    enough = _need(needs, REALS, reals, st.reals_room) and enough
-    pt, kkt = partition_at(st.partition), lu_at(st.kkt)
-    lu_d, small = lu_at(pt.lu_d), m_act if m_act <= b.dense_limit else m_held
+    enough = _need(needs, WORDS, words, structure.words_room)
+    enough = _need(needs, REALS, reals, structure.reals_room) and enough
+    partition, kkt = partition_at(structure.partition), lu_at(structure.kkt)
+    lu_d, small = lu_at(partition.lu_d), m_act if m_act <= b.dense_limit else m_held
     if small <= b.dense_limit:
         enough = _need(needs, OF_D + INDEX, 2 * n_jacobian, lu_d.index_room) and enough
         enough = _need(needs, OF_D + VALUES, small * (small + 1), lu_d.room) and enough
@@ -121,10 +115,10 @@ def _build(ws: Any, b: Any, st: Any) -> int:
     if not enough:
         return WANT_ROOM
     write_structure(
-        ws,
+        workspace,
         b,
-        st,
-        pt,
+        structure,
+        partition,
         m_act,
         m_held,
         n_implied,
@@ -145,8 +139,8 @@ def _build(ws: Any, b: Any, st: Any) -> int:
         sharing,
         first,
     )
-    begin_sharing(ws, st)
-    st.built, st.serial = 1, next_serial(b)
+    begin_sharing(workspace, structure)
+    structure.built, structure.serial = 1, next_serial(b)
     return OK
 
 
@@ -158,12 +152,12 @@ def _need(needs: Any, k: int, size: int, room: int) -> bool:
 
 
 @internal
-def _find_rows(ws: Any, b: Any, active: Any, matrix_row: Any, matrix_col: Any) -> tuple[int, int, int, int]:
+def _find_rows(workspace: Any, b: Any, active: Any, matrix_row: Any, matrix_col: Any) -> tuple[int, int, int, int]:
     """Active rows, those with a position form first and each part ascending, with the implied ones behind them, and the
     row of the matrix of each row of Phi: below it stand those that are only listed, -1 is none; and the column of the
     matrix of its transpose. Returns how many are active, how many of these have a position form, how many are implied,
     and how many of these are of joints."""
-    codes, out, rate = ivec(ws.wanted, b.n_contacts), ivec(b.left_out, b.m_ext), ivec(b.rate_rows, b.m_ext)
+    codes, out, rate = ivec(workspace.wanted, b.n_contacts), ivec(b.left_out, b.m_ext), ivec(b.rate_rows, b.m_ext)
     rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
     seconds, listed = ivec(b.contact_second_rows, b.n_contacts), ivec(b.listed, b.n_contacts)
     replaced, by = ivec(b.replaced_row, b.n_replaced), ivec(b.replaced_contact, b.n_replaced)

@@ -13,14 +13,17 @@ GOLDEN, SILVER = 0.6180339887498949, 0.4142135623730950
 
 
 @compiled
-def set_probe(ws: Any) -> None:
+def set_probe(workspace: Any) -> None:
     """A violation of every row that a coordinate moved by its scale would cause, with weights from 1/2 to 3/2 and signs
-    in no simple order, to `ws.probe`."""
-    st = structure_at(ws.structure)
-    starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
-    slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    for i in range(ws.m_act):
+    in no simple order, to `workspace.probe`."""
+    structure = structure_at(workspace.structure)
+    starts, columns = (
+        ivec(structure.jacobian_start, workspace.m_act + 1),
+        ivec(structure.jacobian_col, structure.n_jacobian),
+    )
+    slots, values = ivec(structure.jacobian_slot, structure.n_jacobian), vec(workspace.values, workspace.n_values)
+    probe, scale = vec(workspace.probe, workspace.m_act), vec(workspace.scale, workspace.n)
+    for i in range(workspace.m_act):
         size = 0.0
         for e in range(starts[i], starts[i + 1]):
             size = max(size, abs(values[slots[e]]) * scale[columns[e]])

@@ -21,10 +21,10 @@ def takes_part(codes: Any, listed: Any, k: int) -> bool:
 
 
 @internal
-def lines_of(ws: Any, b: Any, x: int) -> int:
+def lines_of(workspace: Any, b: Any, x: int) -> int:
     """How many elements of batch x take part."""
     start = ivec(b.element_start, b.n_kernels + 1)
-    codes, listed, count = ivec(ws.wanted, b.n_contacts), ivec(b.listed, b.n_contacts), 0
+    codes, listed, count = ivec(workspace.wanted, b.n_contacts), ivec(b.listed, b.n_contacts), 0
     if ivec(b.of_contacts, b.n_kernels)[x] == 0:
         return int(start[x + 1] - start[x])
     contact = ivec(b.element_contact, start[x + 1])
@@ -34,12 +34,12 @@ def lines_of(ws: Any, b: Any, x: int) -> int:
 
 
 @internal
-def size_of_entries(ws: Any, b: Any) -> tuple[int, int]:
+def size_of_entries(workspace: Any, b: Any) -> tuple[int, int]:
     """(entries with the diagonal, numbers in the slot tables)."""
     s_start, j_start = ivec(b.s_start, b.n_kernels + 1), ivec(b.j_start, b.n_kernels + 1)
-    batches, entries, table = ivec(ws.batches, b.n_kernels), b.n, 0
+    batches, entries, table = ivec(workspace.batches, b.n_kernels), b.n, 0
     for x in range(b.n_kernels):
-        batch, lines = batch_at(batches[x]), lines_of(ws, b, x)
+        batch, lines = batch_at(batches[x]), lines_of(workspace, b, x)
         entries += lines * (s_start[x + 1] - s_start[x] + 2 * (j_start[x + 1] - j_start[x]))
         if ivec(b.of_contacts, b.n_kernels)[x] != 0:
             # the first line is of those that take no part, and each element says which is its own
@@ -50,13 +50,13 @@ def size_of_entries(ws: Any, b: Any) -> tuple[int, int]:
 
 
 @internal
-def list_entries(ws: Any, b: Any, matrix_row: Any, matrix_col: Any, row: Any, col: Any) -> int:
+def list_entries(workspace: Any, b: Any, matrix_row: Any, matrix_col: Any, row: Any, col: Any) -> int:
     """Places of all entries, -1 for those that belong nowhere: the diagonal, then by element S, and Phi_q with its
     transpose in turn; how many. `matrix_row`: of each row of Phi; `matrix_col`: of its transpose."""
-    n, codes, listed = b.n, ivec(ws.wanted, b.n_contacts), ivec(b.listed, b.n_contacts)
+    n, codes, listed = b.n, ivec(workspace.wanted, b.n_contacts), ivec(b.listed, b.n_contacts)
     for i in range(n):
         row[i] = col[i] = i
-    batches, start = ivec(ws.batches, b.n_kernels), ivec(b.element_start, b.n_kernels + 1)
+    batches, start = ivec(workspace.batches, b.n_kernels), ivec(b.element_start, b.n_kernels + 1)
     s_start, j_start, at = ivec(b.s_start, b.n_kernels + 1), ivec(b.j_start, b.n_kernels + 1), n
     contact = ivec(b.element_contact, start[b.n_kernels])
     s_pattern, j_pattern = imat(b.s_pattern, s_start[b.n_kernels], 2), imat(b.j_pattern, j_start[b.n_kernels], 2)
@@ -82,19 +82,19 @@ def list_entries(ws: Any, b: Any, matrix_row: Any, matrix_col: Any, row: Any, co
 
 
 @internal
-def write_tables(ws: Any, b: Any, st: Any, tables: int, nowhere: int, row: Any, slot: Any) -> None:
+def write_tables(workspace: Any, b: Any, structure: Any, tables: int, nowhere: int, row: Any, slot: Any) -> None:
     """Where each entry of each element goes: slot tables at the address `tables`; `row`, `slot` of the entries in the
     order of `list_entries`."""
-    codes, listed = ivec(ws.wanted, b.n_contacts), ivec(b.listed, b.n_contacts)
-    batches, start = ivec(ws.batches, b.n_kernels), ivec(b.element_start, b.n_kernels + 1)
+    codes, listed = ivec(workspace.wanted, b.n_contacts), ivec(b.listed, b.n_contacts)
+    batches, start = ivec(workspace.batches, b.n_kernels), ivec(b.element_start, b.n_kernels + 1)
     s_start, j_start, at = ivec(b.s_start, b.n_kernels + 1), ivec(b.j_start, b.n_kernels + 1), b.n
     contact = ivec(b.element_contact, start[b.n_kernels])
     s_pattern, j_pattern = imat(b.s_pattern, s_start[b.n_kernels], 2), imat(b.j_pattern, j_start[b.n_kernels], 2)
-    addresses = ivec(st.slots, 4 * b.n_kernels)
+    addresses = ivec(structure.slots, 4 * b.n_kernels)
     for x in range(b.n_kernels):
         batch, some = batch_at(batches[x]), ivec(b.of_contacts, b.n_kernels)[x] != 0
         width, both = batch.ncoord, batch.ncoord * max(batch.nrow, 1)
-        lines = lines_of(ws, b, x) + (1 if some else 0)
+        lines = lines_of(workspace, b, x) + (1 if some else 0)
         of_s, of_j, of_jt = tables, tables + 8 * lines * width * width, tables + 8 * lines * (width * width + both)
         size = lines * (width * width + 2 * both)
         of_lines = tables + 8 * size

@@ -1,9 +1,9 @@
 """Which rows of joints share loads, and how compliant each of them is relative to the others.
 
-Redundant joints are the limit of compliant ones (`compatibility.py`): a displacement has the relative compliance c of
-its joint, 1 unless the model gives another, and an angle c/L^2, where L is the length of the model, so that a moment
-counts as the force that makes it at this arm. Norms of Euler parameters are no joints: their compliance is 0. Rows that
-are user-written equations have any unit, and their compliance is the square of their size.
+Redundant joints are the limit of compliant ones (`redundant_reactions.py`): a displacement has the relative
+compliance c of its joint, 1 unless the model gives another, and an angle c/L^2, where L is the length of the model,
+so that a moment counts as the force that makes it at this arm. Norms of Euler parameters are no joints: their
+compliance is 0. Rows that are user-written equations have any unit, and their compliance is the square of their size.
 
 Two joints can repeat each other only where they are of one mechanism (`mechanisms.py`).
 """

@@ -12,10 +12,10 @@ from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE, RATE_SCALE
 
 
 @internal
-def _level(ws: Any, x: Any, least: float) -> float:
+def _level(workspace: Any, x: Any, least: float) -> float:
     """Largest |x_i| / scale_i, at least `least`; of angles less (`ANGLES`)."""
-    scale, largest = vec(ws.level_scale, ws.n), least
-    for i in range(ws.n):
+    scale, largest = vec(workspace.level_scale, workspace.n), least
+    for i in range(workspace.n):
         y = abs(x[i]) / scale[i]
         if y > largest:
             largest = y
@@ -23,44 +23,47 @@ def _level(ws: Any, x: Any, least: float) -> float:
 
 
 @compiled
-def position_level(ws: Any) -> float:
+def position_level(workspace: Any) -> float:
     """Of the coordinates, at least 1."""
-    return _level(ws, vec(ws.q, ws.n), 1.0)
+    return _level(workspace, vec(workspace.q, workspace.n), 1.0)
 
 
 @internal
-def position_level_at(ws: Any, q: Any) -> float:
+def position_level_at(workspace: Any, q: Any) -> float:
     """The same of other coordinates than the present ones."""
-    return _level(ws, q, 1.0)
+    return _level(workspace, q, 1.0)
 
 
 @compiled
-def rate_level(ws: Any) -> float:
+def rate_level(workspace: Any) -> float:
     """Of the velocities, at least what the model's own time makes, 1/s."""
-    return _level(ws, vec(ws.v, ws.n), vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+    return _level(workspace, vec(workspace.v, workspace.n), vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
 
 
 @internal
-def rate_size(ws: Any, k: int) -> float:
+def rate_size(workspace: Any, k: int) -> float:
     """What the rates of gap and sliding distance of contact k are small or large against, m/s."""
-    scale, slide = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[k]
+    scale, slide = (
+        vec(workspace.row_scale, workspace.m_ext),
+        ivec(workspace.contact_slide_rows, workspace.n_contacts)[k],
+    )
     along = scale[slide] if slide >= 0 else 0.0
-    return rate_level(ws) * max(scale[ivec(ws.contact_rows, ws.n_contacts)[k]], along)
+    return rate_level(workspace) * max(scale[ivec(workspace.contact_rows, workspace.n_contacts)[k]], along)
 
 
 @compiled
-def acceleration_level(ws: Any) -> float:
+def acceleration_level(workspace: Any) -> float:
     """Of the accelerations, at least what the model's own time makes, 1/s^2."""
-    rate = vec(ws.control, CONTROL_SIZE)[RATE_SCALE]
-    return _level(ws, vec(ws.a, ws.n), rate * rate)
+    rate = vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
+    return _level(workspace, vec(workspace.a, workspace.n), rate * rate)
 
 
 @compiled
-def force_level(ws: Any) -> float:
+def force_level(workspace: Any) -> float:
     """Of the multipliers, as the work that they do over the scale of their rows: at least the model's own, J."""
-    lam, row_scale = vec(ws.lam, ws.m_ext), vec(ws.row_scale, ws.m_ext)
-    largest = vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
-    for i in range(ws.m_ext - 1):
+    lam, row_scale = vec(workspace.lam, workspace.m_ext), vec(workspace.row_scale, workspace.m_ext)
+    largest = vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE]
+    for i in range(workspace.m_ext - 1):
         y = abs(lam[i]) * row_scale[i]
         if y > largest:
             largest = y

@@ -51,33 +51,42 @@ def _numbers(lu: Any) -> int:
 
 
 @internal
-def _matrix(st: Any, k: int) -> int:
+def _matrix(structure: Any, k: int) -> int:
     """Address of the k-th matrix: two of the equations, that of velocities and that of positions."""
     if k < 2:
-        return int(st.kkt if k == 0 else st.kkt_query)
-    pt = partition_at(st.partition)
-    return int(pt.lu_d if k == 2 else pt.lu_p)
+        return int(structure.kkt if k == 0 else structure.kkt_query)
+    partition = partition_at(structure.partition)
+    return int(partition.lu_d if k == 2 else partition.lu_p)
 
 
 @compiled
-def matrix_words(ws: Any) -> int:
+def matrix_words(workspace: Any) -> int:
     """How many words `save_matrices` writes now."""
-    st = structure_at(ws.structure)
-    count = 2 + ws.n_contacts + 2 * st.m_act + st.n_sharing
+    structure = structure_at(workspace.structure)
+    count = 2 + workspace.n_contacts + 2 * structure.m_act + structure.n_sharing
     for k in range(4):
-        lu = lu_at(_matrix(st, k))
+        lu = lu_at(_matrix(structure, k))
         count += HEAD + lu.n + _numbers(lu)
     return int(count)
 
 
 @compiled
-def save_matrices(ws: Any, at: int) -> int:
+def save_matrices(workspace: Any, at: int) -> int:
     """Write the words to the address `at`; how many."""
-    st = structure_at(ws.structure)
-    pt, m_act, n_contacts, size = partition_at(st.partition), st.m_act, ws.n_contacts, matrix_words(ws)
+    structure = structure_at(workspace.structure)
+    partition, m_act, n_contacts, size = (
+        partition_at(structure.partition),
+        structure.m_act,
+        workspace.n_contacts,
+        matrix_words(workspace),
+    )
     words = ivec(at, 2 + n_contacts + m_act)
     words[0], words[1 + n_contacts] = size, m_act
-    codes, dependent, probe = ivec(st.codes, n_contacts), ivec(pt.dependent, m_act), vec(st.probe, m_act)
+    codes, dependent, probe = (
+        ivec(structure.codes, n_contacts),
+        ivec(partition.dependent, m_act),
+        vec(structure.probe, m_act),
+    )
     for k in range(n_contacts):
         words[1 + k] = codes[k]
     for i in range(m_act):
@@ -87,13 +96,13 @@ def save_matrices(ws: Any, at: int) -> int:
     for i in range(m_act):
         reals[i] = probe[i]
     at += 8 * m_act
-    sharing = st.n_sharing
-    reals, rows = vec(at, sharing), vec(st.compatibility, sharing)
+    sharing = structure.n_sharing
+    reals, rows = vec(at, sharing), vec(structure.compatibility, sharing)
     for i in range(sharing):
         reals[i] = rows[i]
     at += 8 * sharing
     for k in range(4):
-        lu = lu_at(_matrix(st, k))
+        lu = lu_at(_matrix(structure, k))
         head, count = ivec(at, HEAD), _numbers(lu)
         head[0], head[1], head[2] = _kind(lu), lu.n, count
         pivots, own = ivec(at + 8 * HEAD, lu.n), ivec(lu.pivots if lu.kind == DENSE else lu.perm_r, lu.n)
@@ -110,10 +119,10 @@ def save_matrices(ws: Any, at: int) -> int:
 
 
 @compiled
-def restore_matrices(ws: Any, at: int, anew: int) -> int:
+def restore_matrices(workspace: Any, at: int, anew: int) -> int:
     """Bring back what `save_matrices` has written to the address `at`: KEPT, BUILT or UNFIT. `anew`: nothing that is
     there counts, as after a start with other units. The state's numbers have to be there, and again after BUILT."""
-    b, n_contacts = building_at(ws.building), ws.n_contacts
+    b, n_contacts = building_at(workspace.building), workspace.n_contacts
     places, left = ivec(b.structures, b.n_slots), ivec(at, 1)[0] - 2 - n_contacts
     if anew != 0:
         for i in range(b.n_slots):
@@ -121,40 +130,40 @@ def restore_matrices(ws: Any, at: int, anew: int) -> int:
     if left < 0:
         return UNFIT
     words, found = ivec(at, 2 + n_contacts), KEPT
-    st, m_act = structure_at(ws.structure), words[1 + n_contacts]
-    if st.built == 0 or st.dropped != b.dropped or not same_numbers(st.codes, at + 8, n_contacts):
+    structure, m_act = structure_at(workspace.structure), words[1 + n_contacts]
+    if structure.built == 0 or structure.dropped != b.dropped or not same_numbers(structure.codes, at + 8, n_contacts):
         found = BUILT
-        wanted = ivec(ws.wanted, n_contacts)
+        wanted = ivec(workspace.wanted, n_contacts)
         for k in range(n_contacts):
             if words[1 + k] < 0 or words[1 + k] >= CODES:
                 return UNFIT
             wanted[k] = words[1 + k]
-        if call_engage(ws.engage, ws) != OK:
+        if call_engage(workspace.engage, workspace) != OK:
             return UNFIT
-        st = structure_at(ws.structure)
-    sharing = st.n_sharing
+        structure = structure_at(workspace.structure)
+    sharing = structure.n_sharing
     at, left = at + 8 * (2 + n_contacts), left - 2 * m_act - sharing
-    if m_act != st.m_act or left < 0:
+    if m_act != structure.m_act or left < 0:
         return UNFIT
-    pt = partition_at(st.partition)
-    if pt.ready == 0 or not same_numbers(pt.dependent, at, m_act):
+    partition = partition_at(structure.partition)
+    if partition.ready == 0 or not same_numbers(partition.dependent, at, m_act):
         found = BUILT
-        wanted, dependent = ivec(ws.wanted_dependent, m_act), ivec(at, m_act)
+        wanted, dependent = ivec(workspace.wanted_dependent, m_act), ivec(at, m_act)
         for i in range(m_act):
-            if dependent[i] < 0 or dependent[i] >= ws.n:
+            if dependent[i] < 0 or dependent[i] >= workspace.n:
                 return UNFIT
             wanted[i] = dependent[i]
-        partition_wanted(ws)
-    probe, reals = vec(st.probe, m_act), vec(at + 8 * m_act, m_act)
+        partition_wanted(workspace)
+    probe, reals = vec(structure.probe, m_act), vec(at + 8 * m_act, m_act)
     for i in range(m_act):
         probe[i] = reals[i]
     at += 16 * m_act
-    rows, reals = vec(st.compatibility, sharing), vec(at, sharing)
+    rows, reals = vec(structure.compatibility, sharing), vec(at, sharing)
     for i in range(sharing):
         rows[i] = reals[i]
     at += 8 * sharing
     for k in range(4):
-        lu, head = lu_at(_matrix(st, k)), ivec(at, HEAD)
+        lu, head = lu_at(_matrix(structure, k)), ivec(at, HEAD)
         left -= HEAD
         if left < 0 or head[1] != lu.n or head[2] < 0 or lu.n > left or head[2] > left - lu.n:
             return UNFIT

@@ -31,28 +31,28 @@ def _larger_number(largest: float, x: float) -> float:
 
 
 @internal
-def measure_rows(ws: Any, scale: Any, sizes: Any) -> None:
+def measure_rows(workspace: Any, scale: Any, sizes: Any) -> None:
     """How far rows of Phi move when the coordinates move by their scales (n,), into `sizes` (m,).
 
     Phi' = Phi_q v + Phi_t for motions of all coordinates at once; the largest of several.
     """
-    v, phid, m = vec(ws.v, ws.n_ext), vec(ws.phid, ws.m_ext), len(sizes)
+    v, phid, m = vec(workspace.v, workspace.n_ext), vec(workspace.phid, workspace.m_ext), len(sizes)
     v[:] = 0.0
-    evaluate_residuals(ws)
+    evaluate_residuals(workspace)
     still = phid.copy()
     sizes[:] = 0.0
     digits = 1
-    while 2**digits < ws.n:
+    while 2**digits < workspace.n:
         digits += 1
     for k in range(PROBES + 1 + digits):
-        for i in range(ws.n):
+        for i in range(workspace.n):
             if k < PROBES:
                 golden = 0.6180339887498949 * (i + 1.0) * (2 * k + 1)
                 ahead = golden - math.floor(golden) < 0.5
             else:
                 ahead = (i >> (k - PROBES)) % 2 == 0  # the last one moves all alike
             v[i] = scale[i] if ahead else -scale[i]
-        evaluate_residuals(ws)
+        evaluate_residuals(workspace)
         for row in range(m):
             size = abs(phid[row] - still[row])
             sizes[row] = max(sizes[row], size) if math.isfinite(size) else math.inf
@@ -68,11 +68,11 @@ def measure_rows(ws: Any, scale: Any, sizes: Any) -> None:
 
 
 @internal
-def _diagonals(ws: Any, c_q: float, out: Any) -> None:
+def _diagonals(workspace: Any, c_q: float, out: Any) -> None:
     """Magnitudes of the diagonal of M + c_q K (n,)."""
-    evaluate_tangent(ws, c_q, 0.0)
-    slots, values = ivec(ws.mass_slot, ws.n_mass), vec(ws.values, ws.n_values)
-    rows, cols = ivec(ws.entry_row, ws.n_values), ivec(ws.entry_col, ws.n_values)
+    evaluate_tangent(workspace, c_q, 0.0)
+    slots, values = ivec(workspace.mass_slot, workspace.n_mass), vec(workspace.values, workspace.n_values)
+    rows, cols = ivec(workspace.entry_row, workspace.n_values), ivec(workspace.entry_col, workspace.n_values)
     out[:] = 0.0
     for slot in slots:
         if rows[slot] == cols[slot]:
@@ -80,29 +80,37 @@ def _diagonals(ws: Any, c_q: float, out: Any) -> None:
 
 
 @internal
-def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass: Any, found: Any) -> None:
+def measure_motion(workspace: Any, scale: Any, v: Any, later: Any, m_joints: int, mass: Any, found: Any) -> None:
     """Rates, works, masses and stiffness (MEASURED,) at the current point, now and `later` (s), at rest and with the
     velocities v (n,); coordinates with `scale` 0 tell nothing. `mass` (n,) is overwritten."""
-    n, clock, reach = ws.n, vec(ws.t, 1), vec(ws.level_scale, ws.n)
-    q_now, v_now, r = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.r, ws.n_ext)
-    phid, phidd, sizes = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext), vec(ws.row_scale, ws.m_ext)
+    n, clock, reach = workspace.n, vec(workspace.t, 1), vec(workspace.level_scale, workspace.n)
+    q_now, v_now, r = (
+        vec(workspace.q, workspace.n_ext),
+        vec(workspace.v, workspace.n_ext),
+        vec(workspace.r, workspace.n_ext),
+    )
+    phid, phidd, sizes = (
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.phidd, workspace.m_ext),
+        vec(workspace.row_scale, workspace.m_ext),
+    )
     t, q, stiffness = clock[0], q_now.copy(), mass.copy()
     largest = 0.0
     for i in range(n):
         largest = _more(largest, (v[i] / reach[i]) * (v[i] / reach[i]))
     square, work = _larger_number(0.0, largest), 0.0
-    vec(ws.a, ws.n_ext)[:] = 0.0
-    vec(ws.lam, ws.m_ext)[:] = 0.0
+    vec(workspace.a, workspace.n_ext)[:] = 0.0
+    vec(workspace.lam, workspace.m_ext)[:] = 0.0
     for k in range(len(later)):
         clock[0] = t + later[k]
         q_now[:] = q
         for moving in range(2):
             for i in range(n):
                 v_now[i] = v[i] if moving else 0.0
-            evaluate_residuals(ws)
+            evaluate_residuals(workspace)
             if k == 0 and moving == 0:
-                _diagonals(ws, 0.0, mass)
-                evaluate_residuals(ws)
+                _diagonals(workspace, 0.0, mass)
+                evaluate_residuals(workspace)
             push, way, bend, slip = 0.0, 0.0, 0.0, 0.0
             for i in range(n):
                 if mass[i] > 0.0 and scale[i] > 0.0:
@@ -117,8 +125,8 @@ def measure_motion(ws: Any, scale: Any, v: Any, later: Any, m_joints: int, mass:
     clock[0] = t
     q_now[:] = q
     v_now[:] = 0.0
-    evaluate_residuals(ws)
-    _diagonals(ws, 1.0, stiffness)
+    evaluate_residuals(workspace)
+    _diagonals(workspace, 1.0, stiffness)
     stiffest, heaviest, kinetic = 0.0, 0.0, 0.0
     for i in range(n):
         stiff = abs(stiffness[i] - mass[i])

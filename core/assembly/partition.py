@@ -7,10 +7,10 @@ from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
 from ..rounding import CONTRADICTION, RANK_TOLERANCE
 from ..state.workspace_records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
-from .compatibility import share_load
 from .condition_probe import set_probe
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
+from .redundant_reactions import share_load
 from .workspace import Workspace
 
 

@@ -63,6 +63,6 @@ def _contacts_of(friction: JointFrictionForce) -> Sequence[ContactElement]:
         from ..contacts.spherical_friction3d import contacts_of
 
         return contacts_of(friction)
-    from ..contacts.joint_friction import contact_of
+    from ..contacts.joint_friction_contact import contact_of
 
     return (contact_of(friction),)

@@ -6,7 +6,7 @@ such a row at second order and leaves a redundant one at zero.
 
 The motion does not tell the multipliers of redundant constraints (Garcia de Jalon and Bayo 1994, Kinematic and Dynamic
 Simulation of Multibody Systems, 3.4, leave rows out by pivoting as well). They are those of compliant joints
-(`compatibility.py`).
+(`redundant_reactions.py`).
 """
 
 import logging

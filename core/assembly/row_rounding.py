@@ -13,23 +13,30 @@ from ..state.workspace_records import structure_at
 
 
 @compiled
-def row_rounding(ws: Any, x_address: int, quadratic: bool) -> float:
+def row_rounding(workspace: Any, x_address: int, quadratic: bool) -> float:
     """Largest rounding of Phi_q x among the active rows, in parts of their scales as `constraint_norm` counts, with
     the Phi_q evaluated last.
 
     `quadratic` : x are accelerations. Terms that are quadratic in the velocities come to |Phi_q v| times the fastest of
     these, in parts of the coordinates' scales.
     """
-    st = structure_at(ws.structure)
-    starts, columns = ivec(st.jacobian_start, ws.m_act + 1), ivec(st.jacobian_col, st.n_jacobian)
-    slots, values = ivec(st.jacobian_slot, st.n_jacobian), vec(ws.values, ws.n_values)
-    active, row_scale = ivec(ws.active, ws.m_act), vec(ws.row_scale, ws.m_ext)
-    x, v, scale = vec(x_address, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.scale, ws.n_ext)
+    structure = structure_at(workspace.structure)
+    starts, columns = (
+        ivec(structure.jacobian_start, workspace.m_act + 1),
+        ivec(structure.jacobian_col, structure.n_jacobian),
+    )
+    slots, values = ivec(structure.jacobian_slot, structure.n_jacobian), vec(workspace.values, workspace.n_values)
+    active, row_scale = ivec(workspace.active, workspace.m_act), vec(workspace.row_scale, workspace.m_ext)
+    x, v, scale = (
+        vec(x_address, workspace.n_ext),
+        vec(workspace.v, workspace.n_ext),
+        vec(workspace.scale, workspace.n_ext),
+    )
     fastest, largest = 0.0, 0.0
     if quadratic:
-        for i in range(ws.n):
+        for i in range(workspace.n):
             fastest = max(fastest, abs(v[i]) / scale[i])
-    for k in range(ws.m_act):
+    for k in range(workspace.m_act):
         total = 0.0
         for e in range(starts[k], starts[k + 1]):
             j = columns[e]

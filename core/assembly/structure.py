@@ -191,7 +191,7 @@ class Structure:
 
     @property
     def compatibility(self) -> NDArray[np.float64]:
-        """Numbers of the rows of compatibility, one row after another, (n_sharing,) (`compatibility.py`)."""
+        """Numbers of the rows of compatibility, one row after another, (n_sharing,) (`redundant_reactions.py`)."""
         return self.view(self._word("compatibility"), self._word("n_sharing"), np.float64)
 
     @property

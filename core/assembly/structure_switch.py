@@ -12,20 +12,8 @@ from numpy.typing import NDArray
 
 from ..compiled.jit import internal
 from ..compiled.kernels import batch_at
-from ..compiled.views import ivec, mat, vec
-from ..state.modes import (
-    ACTIVE,
-    AT_LIMIT,
-    CLOSED,
-    IMPLIED,
-    MEMORY_SIZE,
-    MODE,
-    OF_FIRST,
-    OF_NORMAL,
-    OF_SECOND,
-    SLIDE,
-    STICKS,
-)
+from ..compiled.views import ivec, vec
+from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, OF_FIRST, OF_NORMAL, OF_SECOND, STICKS, memories_at
 from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call_engage, partition_at, structure_at
 
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
@@ -73,67 +61,97 @@ def key_of(codes: NDArray[np.int64]) -> Key:
 
 
 @internal
-def want(ws: Any) -> None:
+def want(workspace: Any) -> None:
     """Ask for the structure of the contacts' present modes."""
-    wanted, memory = ivec(ws.wanted, ws.n_contacts), mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    slides, seconds = ivec(ws.contact_slide_rows, ws.n_contacts), ivec(ws.contact_second_rows, ws.n_contacts)
-    companion = ivec(ws.contact_companion, ws.n_contacts)
-    for k in range(ws.n_contacts):
-        mode = memory[k, MODE]
+    wanted, memory = ivec(workspace.wanted, workspace.n_contacts), memories_at(workspace.memory, workspace.n_contacts)
+    slides, seconds = (
+        ivec(workspace.contact_slide_rows, workspace.n_contacts),
+        ivec(workspace.contact_second_rows, workspace.n_contacts),
+    )
+    companion = ivec(workspace.contact_companion, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
+        mode = memory[k].mode
         wanted[k] = ENGAGED if mode == ACTIVE else APART
         if mode == CLOSED:
             wanted[k] = HELD
-            if slides[k] >= 0 and memory[k, SLIDE] == STICKS:
+            if slides[k] >= 0 and memory[k].slide_mode == STICKS:
                 # (a companion's second tangent does not move)
                 wanted[k] = STUCK if seconds[k] < 0 or companion[k] < 0 else STUCK_TWICE
-            elif memory[k, SLIDE] == AT_LIMIT:
+            elif memory[k].slide_mode == AT_LIMIT:
                 wanted[k] = STUCK
-            wanted[k] += KINDS * np.int64(memory[k, IMPLIED])
+            wanted[k] += KINDS * np.int64(memory[k].implied_rows)
 
 
 @internal
-def take_structure(ws: Any, address: int) -> None:
+def take_structure(workspace: Any, address: int) -> None:
     """Let the structure at `address` be the present one."""
-    st = structure_at(address)
-    ws.structure = address
-    ws.n_values, ws.values = st.n_values, st.values
-    ws.m_act, ws.active, ws.n_redundant, ws.redundant = st.m_act, st.active, st.n_redundant, st.redundant
-    ws.m_held, ws.n_implied = st.m_held, st.n_implied
-    ws.probe, ws.entry_row, ws.entry_col = st.probe, st.entry_row, st.entry_col
-    ws.gradient_start, ws.gradient_col, ws.gradient_slot = st.gradient_start, st.gradient_col, st.gradient_slot
-    ws.n_mass, ws.mass_slot, ws.kkt, ws.kkt_query = st.n_mass, st.mass_slot, st.kkt, st.kkt_query
-    batches, slots = ivec(ws.batches, ws.n_kernels), ivec(st.slots, 4 * ws.n_kernels)
-    for k in range(ws.n_kernels):
+    structure = structure_at(address)
+    workspace.structure = address
+    workspace.n_values, workspace.values = structure.n_values, structure.values
+    workspace.m_act, workspace.active, workspace.n_redundant, workspace.redundant = (
+        structure.m_act,
+        structure.active,
+        structure.n_redundant,
+        structure.redundant,
+    )
+    workspace.m_held, workspace.n_implied = structure.m_held, structure.n_implied
+    workspace.probe, workspace.entry_row, workspace.entry_col = (
+        structure.probe,
+        structure.entry_row,
+        structure.entry_col,
+    )
+    workspace.gradient_start, workspace.gradient_col, workspace.gradient_slot = (
+        structure.gradient_start,
+        structure.gradient_col,
+        structure.gradient_slot,
+    )
+    workspace.n_mass, workspace.mass_slot, workspace.kkt, workspace.kkt_query = (
+        structure.n_mass,
+        structure.mass_slot,
+        structure.kkt,
+        structure.kkt_query,
+    )
+    batches, slots = ivec(workspace.batches, workspace.n_kernels), ivec(structure.slots, 4 * workspace.n_kernels)
+    for k in range(workspace.n_kernels):
         batch = batch_at(batches[k])
         batch.slot_s, batch.slot_j, batch.slot_jt = slots[4 * k], slots[4 * k + 1], slots[4 * k + 2]
         batch.line = slots[4 * k + 3]
-        batch.values, batch.n_values = st.values, st.n_values
-    values = vec(st.values, st.n_values)
-    for i in range(st.n_values):
+        batch.values, batch.n_values = structure.values, structure.n_values
+    values = vec(structure.values, structure.n_values)
+    for i in range(structure.n_values):
         values[i] = 0.0
     # what is known of the matrices' factors and of the constraints' condition holds no more
-    rate = vec(ws.rate, RATE_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     rate[FACTOR_AGE] = -1.0
     for i in range(CONDITION, RATE_SIZE):
         rate[i] = 0.0
-    if partition_at(st.partition).ready != 0:
-        take_partition(ws, st.partition)
+    if partition_at(structure.partition).ready != 0:
+        take_partition(workspace, structure.partition)
 
 
 @internal
-def take_partition(ws: Any, address: int) -> None:
+def take_partition(workspace: Any, address: int) -> None:
     """Let the partition at `address` be that of the present structure."""
-    pt = partition_at(address)
-    ws.dependent, ws.lu_d, ws.lu_p = pt.dependent, pt.lu_d, pt.used_p
-    ws.n_free, ws.free_row, ws.free_col, ws.free_slot = pt.n_free, pt.free_row, pt.free_col, pt.free_slot
-    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    partition = partition_at(address)
+    workspace.dependent, workspace.lu_d, workspace.lu_p = partition.dependent, partition.lu_d, partition.used_p
+    workspace.n_free, workspace.free_row, workspace.free_col, workspace.free_slot = (
+        partition.n_free,
+        partition.free_row,
+        partition.free_col,
+        partition.free_slot,
+    )
+    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
 
 
 @internal
-def engage_modes(ws: Any) -> int:
+def engage_modes(workspace: Any) -> int:
     """Take the structure of the contacts' present modes: OK, or WANT_ROOM with the same structure as before."""
-    want(ws)
-    codes, wanted, same = ivec(structure_at(ws.structure).codes, ws.n_contacts), ivec(ws.wanted, ws.n_contacts), True
-    for k in range(ws.n_contacts):
+    want(workspace)
+    codes, wanted, same = (
+        ivec(structure_at(workspace.structure).codes, workspace.n_contacts),
+        ivec(workspace.wanted, workspace.n_contacts),
+        True,
+    )
+    for k in range(workspace.n_contacts):
         same = same and codes[k] == wanted[k]
-    return OK if same else int(call_engage(ws.engage, ws))
+    return OK if same else int(call_engage(workspace.engage, workspace))

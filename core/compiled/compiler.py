@@ -96,6 +96,13 @@ def caller(signature: Any) -> Any:
     return intrinsic(namespace["call"])
 
 
+def records_view(record_type: Any) -> Any:
+    """Intrinsic view(address, n): n records of `record_type` from an address on."""
+    from .view_code import vector_view
+
+    return vector_view(record_type)
+
+
 def record_view(record_type: Any) -> Any:
     """Intrinsic view(address): the record of `record_type` at an address."""
 

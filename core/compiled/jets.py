@@ -17,14 +17,7 @@ from numba import types
 from numba.core import cgutils
 from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import (
-    intrinsic,
-    lower_builtin,
-    lower_cast,
-    make_attribute_wrapper,
-    models,
-    register_model,
-)
+from numba.extending import intrinsic, lower_builtin, lower_cast, make_attribute_wrapper, models, register_model
 
 
 class JetType(types.Type):

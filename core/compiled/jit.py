@@ -10,9 +10,9 @@ from typing import Any
 from .library import LIBRARY
 
 if LIBRARY is None:
-    from .compiler import address_of, caller, compiled, compiled_unlocked, inlined, internal, record_view
+    from .compiler import address_of, caller, compiled, compiled_unlocked, inlined, internal, record_view, records_view
 else:
-    from .prebuilt import address_of, caller, compiled, compiled_unlocked, inlined, internal, record_view
+    from .prebuilt import address_of, caller, compiled, compiled_unlocked, inlined, internal, record_view, records_view
 
 __all__ = [
     "address_of",
@@ -23,6 +23,7 @@ __all__ = [
     "internal",
     "interpreted",
     "record_view",
+    "records_view",
 ]
 
 

@@ -169,6 +169,12 @@ def caller(signature: Any) -> Any:
     return Deferred(lambda: compiler_module().caller(for_numba(signature)))
 
 
+def records_view(record_type: Any) -> Any:
+    """Intrinsic view(address, n): n records of `record_type` from an address on."""
+
+    return Deferred(lambda: compiler_module().records_view(for_numba(record_type)))
+
+
 def record_view(record_type: Any) -> Any:
     """Intrinsic view(address): the record of `record_type` at an address."""
 

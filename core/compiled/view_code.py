@@ -31,7 +31,9 @@ def _array_view(context: Any, builder: Any, array_type: Any, address: Any, shape
     return array._getvalue()
 
 
-def _vector_view(dtype: types.Number) -> Any:
+def vector_view(dtype: Any) -> Any:
+    """Intrinsic view(address, n): n of a type from an address on."""
+
     @intrinsic
     def view(typing_context: Any, address: Any, n: Any) -> Any:
         array_type = types.Array(dtype, 1, "C")
@@ -57,15 +59,15 @@ def _matrix_view(dtype: types.Number) -> Any:
     return view
 
 
-vec = _vector_view(types.float64)
+vec = vector_view(types.float64)
 """vec(address, n): view of n float64."""
-ivec = _vector_view(types.int64)
+ivec = vector_view(types.int64)
 """ivec(address, n): view of n int64."""
-uvec = _vector_view(types.uint32)
+uvec = vector_view(types.uint32)
 """uvec(address, n): view of n uint32."""
 mat = _matrix_view(types.float64)
 """mat(address, n, m): view of an n x m row-major float64 array."""
 imat = _matrix_view(types.int64)
 """imat(address, n, m): view of an n x m row-major int64 array."""
 
-__all__ = ["imat", "ivec", "mat", "to_fixed_tuple", "uvec", "vec"]
+__all__ = ["imat", "ivec", "mat", "to_fixed_tuple", "uvec", "vec", "vector_view"]

@@ -13,7 +13,7 @@ from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT, line_of
 from ..compiled.views import imat, mat, vec
 from ..elements.geometry2d import add_product, along, bend_of, levels
 from ..laws.friction.lugre import lugre_formula
-from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, memories_at
 from .geometry_kinds import DISKS, PLANE, are
 from .moving_surface import put_in, surface_speed
 from .normal2d import act, evaluate_law
@@ -88,7 +88,7 @@ def act_bristles(
         levels(b, e, row, 0.0, gradient, bend_of(b, e, hessian))
         vec(b.phid, b.m_extended)[row] -= speed
         vec(b.phidd, b.m_extended)[row] -= faster
-    if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] == ACTIVE:
+    if memories_at(b.memory, b.n_memory)[k].mode == ACTIVE:
         return _bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
     return 0.0, 0.0, 0.0
 

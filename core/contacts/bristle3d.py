@@ -27,7 +27,7 @@ from ..elements.measure3d import AXES_A, COLUMNS
 from ..elements.relative_spin3d import add_torque
 from ..laws.friction.lugre import lugre_slip
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
-from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, memories_at
 from .cable_contact3d import gap_of_cable
 from .cable_foot3d import FOOT_ROWS, WIDTH
 from .geometry_kinds import CABLE_IN_SPACE, SPHERE, are
@@ -70,7 +70,7 @@ def _bend(
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
         vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u, more)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
-    if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
+    if memories_at(b.memory, b.n_memory)[k].mode != ACTIVE:
         return
     found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, rate_along(gradient, v, coord))
     normal, last = max(found, 0.0), b.npar - 1

@@ -28,7 +28,7 @@ from ..compiled.views import imat, ivec, mat, vec
 from ..elements.measure3d import COLUMNS
 from ..elements.relative_spin3d import add_torque, add_torque_by
 from ..model.rotation3d import dot, less, plus, times
-from ..state.modes import AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
+from ..state.modes import AT_LIMIT, CLOSED, IDLE, STICKS, memories_at
 from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .geometry_kinds import SPHERE, are
 from .moving_point3d import MOVES, moves_on
@@ -80,10 +80,10 @@ def _levels(b: Any, e: int, now: Any, rates: Any, lean: float, slow: float) -> N
 def _state(par: Any, memory: Any, closed: bool) -> Any:
     """(it slides, it sticks along both tangents, along the first one, speed that has no direction; -1: it does not
     slide) of a contact."""
-    state = memory[SLIDE]
+    state = memory.slide_mode
     slides = closed and abs(state) == 1.0
     return slides, closed and state == STICKS, closed and state == AT_LIMIT, (
-        max(par[STILL_SPEED], memory[SLOW]) if slides else -1.0
+        max(par[STILL_SPEED], memory.slow_sliding) if slides else -1.0
     )  # fmt: skip
 
 
@@ -95,17 +95,17 @@ def _forces(b: Any, memory: Any, row: Any, state: Any, t1: Any, t2: Any, now: An
     share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     c, s, spins = 1.0, 0.0, 0.0
     if slides:
-        _, _, _, g_d, g_y, g_e, to_d, to_e = direction(now[0], now[1], now[2], memory[LEAN], slow)
+        _, _, _, g_d, g_y, g_e, to_d, to_e = direction(now[0], now[1], now[2], memory.sliding_lean, slow)
         c, s, spins = to_d * g_d - to_e * g_e, g_y, to_e * g_d + to_d * g_e
-    if slides or (memory[MODE] == CLOSED and memory[SLIDE] == IDLE):
-        share = times(-memory[RATIO], plus(times(c, t1), times(s, t2)))
+    if slides or (memory.mode == CLOSED and memory.slide_mode == IDLE):
+        share = times(-memory.friction_ratio, plus(times(c, t1), times(s, t2)))
         pull = times(lam[row[0]], share)
     elif both or one:
         pull = times(-lam[row[1]], t1)
         if both:
             pull = less(pull, times(lam[row[2]], t2))
         else:
-            share = times(-memory[RATIO], t2)
+            share = times(-memory.friction_ratio, t2)
             pull = plus(pull, times(lam[row[0]], share))
     return pull, share, c, s, spins
 
@@ -122,11 +122,11 @@ def grip_spheres(b: Any, t: float, e: int) -> None:
     par, extra, coord = (
         mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
     )  # fmt: skip
-    memory, row, pair = mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0]], imat(b.row, b.count, 3)[e], pair_of(b, e)
+    memory, row, pair = memories_at(b.memory, b.n_memory)[extra[0]], imat(b.row, b.count, 3)[e], pair_of(b, e)
     motion, _ = press_spheres(b, e)
-    slip, n, closed = slip_of_spheres(b, par, coord, pair, motion), motion[2][0], memory[MODE] == CLOSED
+    slip, n, closed = slip_of_spheres(b, par, coord, pair, motion), motion[2][0], memory.mode == CLOSED
     u, u_rate = pass_surface(b, e, t, coord, pair, slip[0], slip[1])
-    axis, angle = int(memory[AXIS]), memory[WAY]
+    axis, angle = int(memory.tangent_axis), memory.tangent_angle
     if not closed or axis == 0:
         axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
     t1, t2, t1_rate, t2_rate = tangents_in_motion(b, coord, pair, axis, angle, motion)
@@ -135,7 +135,7 @@ def grip_spheres(b: Any, t: float, e: int) -> None:
         z, z_rate = spin_on_patch(b, par, coord, pair, n), spin_rate(b, par, coord, pair, n, motion[2][1])
     rates = dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), z_rate
     pull, _, _, _, spins = _forces(b, memory, row, state, t1, t2, (x, y, z))
-    _levels(b, e, (x, y, z), rates, memory[LEAN], state[3])
+    _levels(b, e, (x, y, z), rates, memory.sliding_lean, state[3])
     says, creeps = math.sqrt(dot(pull, pull)) if closed else _says_of_tangents(par, axis), 0.0
     if par[FRICTION_RADIUS] > 0.0:
         creeps = z / creep_size(par, memory, x, y, z)
@@ -153,8 +153,8 @@ def grip_spheres(b: Any, t: float, e: int) -> None:
 @internal
 def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any, moves: Any, work: Any) -> None:
     """The friction of element e of a batch, whose gap, of this kind, has been evaluated."""
-    memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
-    closed = memory[MODE] == CLOSED
+    memory = memories_at(b.memory, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]]
+    closed = memory.mode == CLOSED
     if job != RESIDUAL and not (closed and (job == TANGENT or job == POWER)):
         return
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
@@ -163,7 +163,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
     pair = pair_of(b, e)  # its axes, which those that are held may not be
     n, u, beta_a, beta_b, size = slip_of_batch(kind, b, par, coord, held, moves, work)
     u, more, surface = pass_surface_in(b, e, t, coord, pair, u, work)
-    axis, angle = int(memory[AXIS]), memory[WAY]
+    axis, angle = int(memory.tangent_axis), memory.tangent_angle
     if not closed or axis == 0:
         axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
     t1, t2 = tangents(b, coord, pair, axis, angle, n, work)
@@ -188,7 +188,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
         if radius > 0.0:
             z_rate = spin_rate(b, par, coord, held, n, product_with(work, NORMAL, v, coord))
         rates = dot(u_rate, t1) + dot(u, t1_rate), dot(u_rate, t2) + dot(u, t2_rate), z_rate
-        _levels(b, e, (x, y, z), rates, memory[LEAN], slow)
+        _levels(b, e, (x, y, z), rates, memory.sliding_lean, slow)
         force, monitor = math.sqrt(dot(pull, pull)), vec(b.monitor, b.n_monitor)
         monitor[b.n_memory + k] = force if closed else _says_of_tangents(par, axis)
         monitor[2 * b.n_memory + k] = creeps if closed else z
@@ -211,7 +211,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
         if turns_hard:
             add_torque_tangent(b, par, coord, held, slot, work, n, m, lam[row[0]], gradient)
             add_torque_by(b, coord, held, slot_jt, whole)
-        way, load, spin = direction(x, y, z, memory[LEAN], slow), -memory[RATIO] * lam[row[0]], gradient
+        way, load, spin = direction(x, y, z, memory.sliding_lean, slow), -memory.friction_ratio * lam[row[0]], gradient
         if radius > 0.0:
             spin_changes(b, par, coord, held, work, n, spin)
         for j in range(width):

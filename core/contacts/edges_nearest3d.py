@@ -17,9 +17,9 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B
 from ..model.rotation3d import constant, dot, four, less, plus, three, times, turned, turning
-from .crossing3d import back_by
 from .moving_point3d import CROSSED, SEGMENTS, hold_segments, nearest_of_segments
 from .normal3d import RADIUS_A, RADIUS_B, TILT
+from .parallel_axes3d import back_by
 
 EDGES = 2
 """What stands in place of whether a mesh is open: the table is of edges."""

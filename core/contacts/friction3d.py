@@ -18,7 +18,7 @@ from ..elements.measure3d import COLUMNS
 from ..elements.relative_spin3d import add_torque
 from ..laws.friction import call_friction
 from ..model.rotation3d import dot, less, plus, times
-from ..state.modes import ACTIVE, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, memories_at
 from .geometry_kinds import SPHERE, are
 from .moving_point3d import MOVES, moves_on
 from .normal2d import act, evaluate_law, idle
@@ -67,7 +67,7 @@ def rub_spheres(b: Any, t: float, e: int) -> None:
     vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
     vec(b.phidd, b.m_extended)[row] = speed_rate(n, motion[2][1], u, u_rate)
     vec(b.monitor, b.n_monitor)[b.n_memory + extra[0]] = 0.0
-    if mat(b.memory, b.n_memory, MEMORY_SIZE)[extra[0], MODE] != ACTIVE:
+    if memories_at(b.memory, b.n_memory)[extra[0]].mode != ACTIVE:
         return
     normal, z = max(found, 0.0), spin_on_patch(b, par, coord, pair, n)
     whole = math.sqrt(speed * speed + z * z)
@@ -99,7 +99,7 @@ def regularised(
         vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = 0.0, speed
         vec(b.phidd, b.m_extended)[row] = speed_rate_of_batch(b, coord, work, n, u, more)
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = 0.0
-    if mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] != ACTIVE:
+    if memories_at(b.memory, b.n_memory)[k].mode != ACTIVE:
         return
     found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, rate_along(gradient, v, coord))
     normal = max(found, 0.0)

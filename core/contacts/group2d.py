@@ -16,9 +16,9 @@ from ..laws.friction import Friction, TurningFriction
 from ..model.base import Name, Positive, Vector3
 from ..model.markers import GROUND
 from ..model.signals import Signal
-from .box2d import Box2D, DiskOnBox2D
 from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .contact3d import Contact3D
+from .disk_on_box2d import Box2D, DiskOnBox2D
 from .group_surfaces import with_surface
 from .groups import ContactGroup
 from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, open_contacts

@@ -22,7 +22,7 @@ from ..elements.geometry2d import (
     levels,
 )
 from ..laws import call_law
-from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, LAID_MASS, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, CLOSED, memories_at
 from .geometry_kinds import DISKS, PLANE, are
 
 LAW_ADDRESS = 1
@@ -41,18 +41,18 @@ def idle(b: Any, e: int, job: int) -> bool:
     its gap is asked for. Not so for friction with states of its own."""
     if is_sleeping(b, e):
         return True
-    mode = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0], MODE]
+    mode = memories_at(b.memory, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]].mode
     return bool(job != RESIDUAL and mode != CLOSED and mode != ACTIVE)
 
 
 @internal
 def evaluate_law(b: Any, e: int, k: int, g: float, rate: float) -> Any:
     """(F, dF/d delta, dF/d delta_dot, elastic part, elastic energy) of element e, contact k."""
-    memory, p = mat(b.memory, b.n_memory, MEMORY_SIZE)[k], mat(b.par, b.count, b.npar)[e]
-    law, depth, speed = imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS], max(-g, 0.0), memory[APPROACH_SPEED]
+    memory, p = memories_at(b.memory, b.n_memory)[k], mat(b.par, b.count, b.npar)[e]
+    law, depth, speed = imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS], max(-g, 0.0), memory.approach_speed
     found = call_law(law, depth, -rate, speed, p[7], p[8], p[9], p[10])
     # shapes that were laid on each other are damped as by the blow that goes as deep, m v^2/2 = elastic energy
-    twice, mass = 2.0 * found[4], memory[LAID_MASS]
+    twice, mass = 2.0 * found[4], memory.laid_mass
     if mass > 0.0 and twice > mass * speed * speed:
         f, f_d, f_dd, elastic, energy = call_law(law, depth, -rate, np.sqrt(twice / mass), p[7], p[8], p[9], p[10])
         return f, f_d + f_dd * rate * elastic / twice, f_dd, elastic, energy
@@ -68,7 +68,7 @@ def _add_force(b: Any, job: int, e: int, k: int, g: float, gradient: Any, hessia
     v = vec(b.v, b.n_extended)
     rate = along(gradient, v, coord)
     f, f_d, f_dd, elastic, energy = evaluate_law(b, e, k, g, rate)
-    active = mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE] == ACTIVE
+    active = memories_at(b.memory, b.n_memory)[k].mode == ACTIVE
     if job == RESIDUAL:
         vec(b.monitor, b.n_monitor)[k] = f
         if active:
@@ -97,7 +97,7 @@ def act(b: Any, job: int, e: int, g: float, gradient: Any, hessian: Any) -> None
     k = imat(b.extra, b.count, b.nextra)[e, 0]
     force_law = imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0
     lam = vec(b.lam, b.m_extended)
-    closed = vec(b.memory, MEMORY_SIZE * b.n_memory)[MEMORY_SIZE * k + MODE] == CLOSED
+    closed = memories_at(b.memory, b.n_memory)[k].mode == CLOSED
     if job == RESIDUAL and not closed:
         levels(b, e, row, g, gradient, bend_of(b, e, hessian))
         if not force_law:

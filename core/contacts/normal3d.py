@@ -9,7 +9,6 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import COLUMNS, measure
-from .crossing3d import draw_back
 from .moving_point3d import (
     CROSSED,
     HOLLOW,
@@ -24,6 +23,7 @@ from .moving_point3d import (
     on_round,
 )
 from .nearest_point3d import hold_on_round
+from .parallel_axes3d import draw_back
 
 PACKED = SIZE * (SIZE + 1) // 2
 KIND, RADIUS_A, RADIUS_B = 0, 1, 2
@@ -32,7 +32,7 @@ a hollow sphere negative."""
 EXTENT_A, EXTENT_B = 4, 5
 """How far points of contact may be from their markers, m; of segments their half lengths."""
 TILT = 6
-"""Sine of the angle of two segments below which their gap draws back (`crossing3d.py`); 0: never."""
+"""Sine of the angle of two segments below which their gap draws back (`parallel_axes3d.py`); 0: never."""
 PAIR = 16
 NUMBERS = PAIR + COLUMNS
 """The numbers of a smooth or round shape."""

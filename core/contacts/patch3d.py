@@ -15,7 +15,6 @@ import math
 from typing import Any
 
 from ..compiled.jit import inlined, internal
-from ..state.modes import SLOW
 
 STILL_SPEED = 3
 """Column of the parameters: STILL, m/s."""
@@ -47,5 +46,5 @@ def turn_of_direction(way: Any, x: float, y: float, z: float) -> Any:
 def creep_size(par: Any, memory: Any, x: float, y: float, z: float) -> float:
     """In parts of which z is the torque against spinning of a contact that does not slide; with what it slides by, for
     an instant asks for it before it is known."""
-    slow = CREEPS * max(par[STILL_SPEED], memory[SLOW])
+    slow = CREEPS * max(par[STILL_SPEED], memory.slow_sliding)
     return math.sqrt(x * x + y * y + z * z + slow * slow)

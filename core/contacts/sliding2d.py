@@ -25,7 +25,7 @@ from ..elements.geometry2d import (
     levels,
 )
 from ..laws.friction import call_friction
-from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE, SLIDE_START, STICKS
+from ..state.modes import ACTIVE, CLOSED, STICKS, memories_at
 from .geometry_kinds import DISKS, PLANE, are
 from .moving_surface import moves, put_in, surface_speed
 from .normal2d import LAW_ADDRESS, act, evaluate_law, idle
@@ -42,7 +42,7 @@ def _slide_row(
 ) -> None:
     """The sliding distance's row: its value, rate and acceleration always; a constraint while the contact sticks."""
     row = imat(b.row, b.count, b.nrow)[e, 1]
-    since = s - mat(b.memory, b.n_memory, MEMORY_SIZE)[k, SLIDE_START]
+    since = s - memories_at(b.memory, b.n_memory)[k].slide_start
     if period > 0.0:
         since -= period * np.rint(since / period)
     if sticks:
@@ -146,9 +146,9 @@ def act_sliding(
     """
     act(b, job, e, g, g_gradient, g_hessian)
     k = imat(b.extra, b.count, b.nextra)[e, 0]
-    memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[k]
-    closed, surface = memory[MODE] == CLOSED, surface_speed(b, e, t)
-    sticks = closed and memory[SLIDE] == STICKS
+    memory = memories_at(b.memory, b.n_memory)[k]
+    closed, surface = memory.mode == CLOSED, surface_speed(b, e, t)
+    sticks = closed and memory.slide_mode == STICKS
     lam = vec(b.lam, b.m_extended)
     if job == RESIDUAL:
         vec(b.monitor, b.n_monitor)[b.n_memory + k] = -lam[imat(b.row, b.count, b.nrow)[e, 1]] if sticks else 0.0
@@ -156,9 +156,9 @@ def act_sliding(
         _slide_row(b, job, e, k, s, gradient, hessian, period, sticks, surface)
     elif job == POWER and sticks:
         put_in(b, e, -lam[imat(b.row, b.count, b.nrow)[e, 1]] * surface[0])
-    if closed and memory[RATIO] != 0.0:
-        _slip(b, job, e, -memory[RATIO], gradient, hessian, surface[0])
-    elif memory[MODE] == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
+    if closed and memory.friction_ratio != 0.0:
+        _slip(b, job, e, -memory.friction_ratio, gradient, hessian, surface[0])
+    elif memory.mode == ACTIVE and imat(b.extra, b.count, b.nextra)[e, LAW_ADDRESS] != 0:
         return _regularised(b, job, e, g, g_gradient, g_hessian, gradient, hessian, surface[0])
     return 0.0, 0.0
 

@@ -14,7 +14,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import AXES_A, POINT_A, POINT_B
 from ..model.rotation3d import along, constant, cross, dot, four, less, onto, plus, space_axes, three, times, turns
-from ..state.modes import ACTIVE, CLOSED, MEMORY_SIZE, MODE
+from ..state.modes import ACTIVE, CLOSED, memories_at
 from .moving_point3d import HOLLOW, on_plane
 from .normal2d import LAW_ADDRESS, evaluate_law
 from .normal3d import KIND, RADIUS_A, RADIUS_B, SIZE, pair_of
@@ -82,7 +82,7 @@ def press_spheres(b: Any, e: int) -> Any:
     g, rate, second = motion[0]
     vec(b.phi, b.m_extended)[row], vec(b.phid, b.m_extended)[row] = g, rate
     vec(b.phidd, b.m_extended)[row] = second
-    mode, monitor, force = mat(b.memory, b.n_memory, MEMORY_SIZE)[k, MODE], vec(b.monitor, b.n_monitor), 0.0
+    mode, monitor, force = memories_at(b.memory, b.n_memory)[k].mode, vec(b.monitor, b.n_monitor), 0.0
     if extra[LAW_ADDRESS] != 0:
         force, _, _, _, _ = evaluate_law(b, e, k, g, rate)
         monitor[k] = force

@@ -1,9 +1,9 @@
 """Coulomb friction of spherical joints: a torque within a ball, against the angular velocity w of b on a.
 
-As in `joint_friction.py` it is a contact whose normal force is given; but it has three tangents, the components of
-u = L w, L a length of the model, and |F| <= mu N of all three together. Contacts have two tangents at most, so there
-are two, with the same load: the first one has two of the tangents, the next one, its companion, has the third. Both do
-the same at all times (`events/three_tangents.py`); what slides is braked by the first one alone.
+As in `joint_friction_contact.py` it is a contact whose normal force is given; but it has three tangents, the
+components of u = L w, L a length of the model, and |F| <= mu N of all three together. Contacts have two tangents at
+most, so there are two, with the same load: the first one has two of the tangents, the next one, its companion, has
+the third. Both do the same at all times (`events/three_tangents.py`); what slides is braked by the first one alone.
 
 Tangents are counted from the axes of space. What sticks has rows at velocity level along t_1, T_2 and T_3; what slides
 has a direction d, and F = -mu N g as on a patch (`patch3d.py`). With c, s of the angle WAY and l, k of the angle LEAN,
@@ -34,10 +34,10 @@ from ..elements.relative_spin3d import (
 from ..laws.friction import CoulombFriction
 from ..model.markers import Marker3D
 from ..model.rotation3d import dot, four, less, plus, space_axes, times
-from ..state.modes import AT_LIMIT, AXIS, CLOSED, LEAN, MEMORY_SIZE, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
+from ..state.modes import AT_LIMIT, CLOSED, STICKS, memories_at
 from .coulomb3d import TURNED
 from .geometry_kinds import JOINT, are
-from .joint_friction import GAIN, KIND, PAIR, SIZE, SPATIAL, JointFriction, press
+from .joint_friction_contact import GAIN, KIND, PAIR, SIZE, SPATIAL, JointFriction, press
 from .patch3d import direction, turn_of_direction
 
 ROWS, STOP, WIDTH = 3, SPATIAL, SPATIAL + 1
@@ -52,8 +52,8 @@ SLOWEST = 1e-150
 def _axes(memory: Any, closed: bool) -> Any:
     """(t_1, t_2, T_2, T_3); those of the axes of space where no instant has chosen others."""
     way, lean = 0.0, 0.0
-    if closed and memory[AXIS] != 0.0:
-        way, lean = memory[WAY], memory[LEAN]
+    if closed and memory.tangent_axis != 0.0:
+        way, lean = memory.tangent_angle, memory.sliding_lean
     c, s, level, up = math.cos(way), math.sin(way), math.cos(lean), math.sin(lean)
     return (c, s, 0.0), (-s, c, 0.0), (-level * s, level * c, up), (up * s, -up * c, level)
 
@@ -69,7 +69,7 @@ def _say_levels(b: Any, row: Any, u: Any, rate: Any, memory: Any, axes: Any, slo
         phid[row[1]], phidd[row[1]] = dot(one, u), dot(one, rate)
         phid[row[2]], phidd[row[2]] = (dot(held_2, u), dot(held_2, rate)) if first else (0.0, 0.0)
         return
-    p, _, size, _, _, _, c, s = direction(dot(t_1, u), dot(t_2, u), u[2], memory[LEAN], slow)
+    p, _, size, _, _, _, c, s = direction(dot(t_1, u), dot(t_2, u), u[2], memory.sliding_lean, slow)
     speed, power = math.sqrt(dot(u, u)), dot(u, rate)
     phid[row[1]], phid[row[2]] = p - TURNED * (size - slow), speed
     phidd[row[1]] = c * dot(t_1, rate) + s * rate[2] - TURNED * power / size
@@ -81,28 +81,28 @@ def _rub(b: Any, job: int, e: int) -> None:
     """What element e adds for `job`, beside its load."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     coord, row, k = imat(b.coord, b.count, WIDTH)[e], imat(b.row, b.count, b.nrow)[e], extra[0]
-    memory, first, arm = mat(b.memory, b.n_memory, MEMORY_SIZE)[k], par[KIND] == FIRST, par[SIZE]
+    memory, first, arm = memories_at(b.memory, b.n_memory)[k], par[KIND] == FIRST, par[SIZE]
     q, v, a, lam = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended), vec(b.lam, b.m_extended)
-    pair, closed, w = vec(b.par + 8 * (e * b.npar + PAIR), 2), memory[MODE] == CLOSED, coord[STOP]
+    pair, closed, w = vec(b.par + 8 * (e * b.npar + PAIR), 2), memory.mode == CLOSED, coord[STOP]
     if job != RESIDUAL and not closed:
         return
-    slides, sticks = closed and abs(memory[SLIDE]) == 1.0, closed and memory[SLIDE] == STICKS
-    at_limit, normal = closed and memory[SLIDE] == AT_LIMIT, lam[row[0]]
-    axes, slow = _axes(memory, closed), max(memory[SLOW], SLOWEST) if slides else -1.0
+    slides, sticks = closed and abs(memory.slide_mode) == 1.0, closed and memory.slide_mode == STICKS
+    at_limit, normal = closed and memory.slide_mode == AT_LIMIT, lam[row[0]]
+    axes, slow = _axes(memory, closed), max(memory.slow_sliding, SLOWEST) if slides else -1.0
     t_1, t_2, held_2, held_3 = axes
     u = times(arm, relative_spin(q, v, coord, pair))
     along, share, pull = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if slides:
-        _, _, _, g_d, g_y, g_e, c, s = direction(dot(t_1, u), dot(t_2, u), u[2], memory[LEAN], slow)
+        _, _, _, g_d, g_y, g_e, c, s = direction(dot(t_1, u), dot(t_2, u), u[2], memory.sliding_lean, slow)
         along = plus(times(c * g_d - s * g_e, t_1), plus(times(g_y, t_2), (0.0, 0.0, s * g_d + c * g_e)))
-        share = times(-memory[RATIO], along)
+        share = times(-memory.friction_ratio, along)
         pull = times(normal, share)
     elif first and (sticks or at_limit):
         pull = times(-lam[row[1]], t_1)
         if sticks:
             pull = less(pull, times(lam[row[2]], held_2))
         else:
-            share = times(-memory[RATIO], held_2)
+            share = times(-memory.friction_ratio, held_2)
             pull = plus(pull, times(normal, share))
     elif sticks or at_limit:
         pull = times(-lam[row[1]], held_3)
@@ -146,7 +146,7 @@ def _add_tangent(
     values[slot_jt[STOP]] += par[GAIN]
     t_1, t_2, held_2, held_3 = axes
     if slow < 0.0:
-        sticks, at_limit = memory[SLIDE] == STICKS, memory[SLIDE] == AT_LIMIT
+        sticks, at_limit = memory.slide_mode == STICKS, memory.slide_mode == AT_LIMIT
         for k in range(1, ROWS):
             if not (sticks or (at_limit and k == 1)) or (k == 2 and not first):
                 continue
@@ -159,10 +159,10 @@ def _add_tangent(
     add_torque_tangent(b, coord, pair, slot, times(arm, pull))
     if slow < 0.0:
         return
-    way = direction(dot(t_1, u), dot(t_2, u), u[2], memory[LEAN], slow)
+    way = direction(dot(t_1, u), dot(t_2, u), u[2], memory.sliding_lean, slow)
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
-    load = -memory[RATIO] * lam[row[0]] * arm
+    load = -memory.friction_ratio * lam[row[0]] * arm
     for j in range(SPATIAL):
         by = times(arm, spin_by_coordinate(j, coef[0], coef[1], axes_a, axes_b, spin_a, spin_b))
         g_1, g_2, g_3 = turn_of_direction(way, dot(t_1, by), dot(t_2, by), by[2])

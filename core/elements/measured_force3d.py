@@ -27,17 +27,7 @@ from ..model.said_angle import CountedAngle, SaidAngle
 from ..model.signals import INPUT_SIZE, evaluate_signal
 from ..rounding import MEETING
 from .base import BodyElement, ForceElement, Numbering, Part, Row
-from .measure3d import (
-    ANGLE,
-    COLUMNS,
-    DISTANCE,
-    PLACE,
-    add_force_tangent,
-    columns_of,
-    coordinates_of,
-    measure,
-    product,
-)
+from .measure3d import ANGLE, COLUMNS, DISTANCE, PLACE, add_force_tangent, columns_of, coordinates_of, measure, product
 from .saturation import saturated
 from .spatial_body import start_of_marker
 from .start_angle3d import check_start_angle

@@ -9,15 +9,7 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.markers import Marker2D
 from .base import ForceElement, Form, Numbering, Row
-from .formula2d import (
-    MARKER_COLUMNS,
-    Arguments,
-    argument_names,
-    caller_of,
-    derivatives,
-    form_ahead,
-    plain_function,
-)
+from .formula2d import MARKER_COLUMNS, Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
 from .geometry2d import add_hessian, add_product, along
 
 Function = Callable[..., Any]

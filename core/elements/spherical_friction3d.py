@@ -18,13 +18,7 @@ from .base import BodyElement, Numbering, Row
 from .joint_friction import JointFrictionForce, check_radius
 from .measure3d import columns_of, coordinates_of
 from .measured_force3d import FULL, Pair3D
-from .relative_spin3d import (
-    add_torque,
-    add_torque_change,
-    add_torque_tangent,
-    relative_spin,
-    spin_by_coordinate,
-)
+from .relative_spin3d import add_torque, add_torque_change, add_torque_tangent, relative_spin, spin_by_coordinate
 from .turning_bodies import refuse_points
 
 TORQUE, TRANSITION, PAIR = 0, 1, 2

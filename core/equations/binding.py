@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.weakly import Weakly
 from ..laws import ForceLaw
-from ..state.modes import ACTIVE, APPROACH_SPEED, CLOSED, MODE
+from ..state.modes import ACTIVE, CLOSED, contact_memories
 from .errors import EquationError
 from .kernel import CALLBACK
 
@@ -70,12 +70,12 @@ class EquationBinding:
         """What the springs of the force laws hold."""
         arrays = self.workspace.arrays
         for k, gap in enumerate(self.system.gaps):
-            if arrays["memory"][k, MODE] == ACTIVE:
+            if contact_memories(arrays["memory"]).mode[k] == ACTIVE:
                 arrays["energy"][2] += self._force(k, float(gap.value(t, q)[0]), 0.0)[4]
 
     def _force(self, k: int, gap: float, rate: float) -> tuple[float, ...]:
         law = self.system.contacts[k].law
-        approach = float(self.workspace.arrays["memory"][k, APPROACH_SPEED])
+        approach = float(contact_memories(self.workspace.arrays["memory"]).approach_speed[k])
         if not isinstance(law, ForceLaw):
             raise EquationError(f"contact '{self.system.contacts[k].name}' has no force law")
         return law.evaluate(max(-gap, 0.0), -rate, approach)
@@ -86,7 +86,7 @@ class EquationBinding:
             gradient, g, gd, gdd = (np.asarray(x).reshape(-1) for x in gap.levels(t, q, v, a))
             row = m + k
             arrays["phi"][row], arrays["phid"][row], arrays["phidd"][row] = g[0], gd[0], gdd[0]
-            mode = arrays["memory"][k, MODE]
+            mode = contact_memories(arrays["memory"]).mode[k]
             if isinstance(self.system.contacts[k].law, ForceLaw):
                 force = self._force(k, g[0], gd[0])[0]
                 arrays["monitor"][k] = force
@@ -105,7 +105,7 @@ class EquationBinding:
         rows = np.zeros((m + len(self.system.gaps), n))
         rows[:m] = jacobian
         for k, gap in enumerate(self.system.gaps):
-            mode = arrays["memory"][k, MODE]
+            mode = contact_memories(arrays["memory"]).mode[k]
             if mode == CLOSED:
                 gradient, curvature = gap.jacobian_and_curvature(t, q, arrays["lam"][[m + k]])
                 rows[m + k] = gradient.reshape(-1)
@@ -127,7 +127,7 @@ class EquationBinding:
     def _power(self, t: float, q: NDArray, v: NDArray, a: NDArray) -> None:
         arrays, m = self.workspace.arrays, self.system.m
         for k, contact in enumerate(self.workspace.assembly.contacts):
-            mode = arrays["memory"][k, MODE]
+            mode = contact_memories(arrays["memory"]).mode[k]
             if mode == CLOSED:
                 arrays["a"][contact.impulse_account] -= arrays["lam"][m + k]
             elif mode == ACTIVE:

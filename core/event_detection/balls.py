@@ -95,9 +95,9 @@ def _told(batch: Batch, kind: int, at: NDArray[np.int64], side: int) -> NDArray[
 
 
 @internal
-def tell_ball(lc: Any, k: int, side: int, in_space: int, ball: Any) -> None:
+def tell_ball(loop: Any, k: int, side: int, in_space: int, ball: Any) -> None:
     """Point, radius and rest (BALL_NUMBERS,) of one shape of contact k, as its parameters are now."""
-    batch = probe_of(lc, k)
+    batch = probe_of(loop, k)
     par = mat(batch.par, batch.count, batch.npar)[0]
     if in_space == 0:
         ball[POINT], ball[POINT + 1], ball[POINT + 2] = par[2 * side], par[2 * side + 1], 0.0

@@ -15,9 +15,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..contacts.travel3d import TURN
+from ..contacts.gap_motion_bound3d import TURN
 from ..methods.history import history_row
-from ..state.modes import MEMORY_SIZE, MODE, OPEN
+from ..state.modes import OPEN, memories_at
 from .balls import (
     BALL_INTEGERS,
     BALL_NUMBERS,
@@ -48,9 +48,9 @@ CENTRE, SKIN, GONE = 0, 3, 4
 
 
 @internal
-def _way_of_ball(lc: Any, i: int, way: Any) -> float:
+def _way_of_ball(loop: Any, i: int, way: Any) -> float:
     """An upper bound of how far the centre of ball i goes within the step, m."""
-    c, x = imat(lc.ball_coords, lc.n_balls, BALL_INTEGERS)[i], mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i]
+    c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
     arm = math.sqrt(x[POINT] ** 2 + x[POINT + 1] ** 2 + x[POINT + 2] ** 2)
     if c[IN_SPACE] == 0:
         return float(way[c[0]] + way[c[1]] + arm * way[c[2]])
@@ -60,15 +60,15 @@ def _way_of_ball(lc: Any, i: int, way: Any) -> float:
 
 
 @internal
-def _skin(lc: Any, i: int, way: float) -> float:
+def _skin(loop: Any, i: int, way: float) -> float:
     """How thick the skin of ball i is, m, that goes this way in a step."""
-    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i, RADIUS]))
+    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i, RADIUS]))
 
 
 @internal
-def _place(lc: Any, i: int, q: Any, centre: Any) -> None:
+def _place(loop: Any, i: int, q: Any, centre: Any) -> None:
     """Where the centre of ball i is, (3,), m."""
-    c, x = imat(lc.ball_coords, lc.n_balls, BALL_INTEGERS)[i], mat(lc.balls, lc.n_balls, BALL_NUMBERS)[i]
+    c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
     u, v, w = x[POINT], x[POINT + 1], x[POINT + 2]
     centre[0], centre[1], centre[2] = q[c[0]], q[c[1]], 0.0
     if c[IN_SPACE] == 0:
@@ -86,68 +86,72 @@ def _place(lc: Any, i: int, q: Any, centre: Any) -> None:
 
 
 @internal
-def keep_watch(ws: Any, ms: Any, lc: Any) -> None:
+def keep_watch(workspace: Any, method: Any, loop: Any) -> None:
     """Have the pairs looked at that could close within the step that ends at the current point, for which `set_travel`
     has been called: where a ball goes beyond its skin there, sweep at the newest row."""
-    if lc.n_balls == 0 or lc.may_sleep == 0:
+    if loop.n_balls == 0 or loop.may_sleep == 0:
         return
-    way, moves = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, lc.n_balls, 5)
-    fits = ivec(lc.broad, MARKS)[VALID] != 0
-    for i in range(lc.n_balls):
+    way, moves = mat(loop.travel, 2, workspace.n_ext)[0], mat(loop.ball_moves, loop.n_balls, 5)
+    fits = ivec(loop.broad, MARKS)[VALID] != 0
+    for i in range(loop.n_balls):
         if not fits:
             break
-        fits = moves[i, GONE] + _way_of_ball(lc, i, way) <= moves[i, SKIN]
+        fits = moves[i, GONE] + _way_of_ball(loop, i, way) <= moves[i, SKIN]
     if not fits:
-        _sweep(ws, ms, lc)
+        _sweep(workspace, method, loop)
 
 
 @internal
-def go_on(ws: Any, lc: Any) -> None:
+def go_on(workspace: Any, loop: Any) -> None:
     """The step that ends at the current point has been accepted."""
-    if lc.n_balls == 0 or lc.may_sleep == 0 or ivec(lc.broad, MARKS)[VALID] == 0:
+    if loop.n_balls == 0 or loop.may_sleep == 0 or ivec(loop.broad, MARKS)[VALID] == 0:
         return
-    way, moves = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, lc.n_balls, 5)
+    way, moves = mat(loop.travel, 2, workspace.n_ext)[0], mat(loop.ball_moves, loop.n_balls, 5)
     thick = 0
-    for i in range(lc.n_balls):
-        goes = _way_of_ball(lc, i, way)
+    for i in range(loop.n_balls):
+        goes = _way_of_ball(loop, i, way)
         moves[i, GONE] += goes
-        thick += 1 if moves[i, SKIN] > TOO_THICK * _skin(lc, i, goes) else 0
-    if 2 * thick > lc.n_balls:
+        thick += 1 if moves[i, SKIN] > TOO_THICK * _skin(loop, i, goes) else 0
+    if 2 * thick > loop.n_balls:
         moves[0, GONE] = np.inf
 
 
 @internal
-def _measure(lc: Any) -> None:
+def _measure(loop: Any) -> None:
     """Balls as the contacts' parameters are now: each about the point of one of its contacts, and so large that the
     shapes of all lie in it."""
-    n = lc.n_balls
-    coords, balls = imat(lc.ball_coords, n, BALL_INTEGERS), mat(lc.balls, n, BALL_NUMBERS)
+    n = loop.n_balls
+    coords, balls = imat(loop.ball_coords, n, BALL_INTEGERS), mat(loop.balls, n, BALL_NUMBERS)
     for i in range(n):
-        tell_ball(lc, coords[i, WHO], coords[i, SIDE], coords[i, IN_SPACE], balls[i])
-    start = ivec(lc.pair_start, n + 1)
-    others, contacts = ivec(lc.pair_other, start[n]), ivec(lc.pair_contact, start[n])
-    turned, other = ivec(lc.pair_turned, start[n]), np.empty(BALL_NUMBERS)
+        tell_ball(loop, coords[i, WHO], coords[i, SIDE], coords[i, IN_SPACE], balls[i])
+    start = ivec(loop.pair_start, n + 1)
+    others, contacts = ivec(loop.pair_other, start[n]), ivec(loop.pair_contact, start[n])
+    turned, other = ivec(loop.pair_turned, start[n]), np.empty(BALL_NUMBERS)
     for i in range(n):
         for p in range(start[i], start[i + 1]):
             for side in range(2):
                 ball = balls[i if side == turned[p] else others[p]]
-                tell_ball(lc, contacts[p], side, coords[i, IN_SPACE], other)
+                tell_ball(loop, contacts[p], side, coords[i, IN_SPACE], other)
                 u, v, w = other[0] - ball[0], other[1] - ball[1], other[2] - ball[2]
                 ball[RADIUS] = max(ball[RADIUS], other[RADIUS] + math.sqrt(u * u + v * v + w * w))
 
 
 @internal
-def _sweep(ws: Any, ms: Any, lc: Any) -> None:
-    if ivec(lc.broad, MARKS)[VALID] == 0:
-        _measure(lc)
-    n, start = lc.n_balls, history_row(ws, ms, 0)
-    way, moves, balls = mat(lc.travel, 2, ws.n_ext)[0], mat(lc.ball_moves, n, 5), mat(lc.balls, n, BALL_NUMBERS)
-    marks, order, reach = ivec(lc.broad, MARKS), ivec(lc.ball_order, n), vec(lc.ball_reach, n)
+def _sweep(workspace: Any, method: Any, loop: Any) -> None:
+    if ivec(loop.broad, MARKS)[VALID] == 0:
+        _measure(loop)
+    n, start = loop.n_balls, history_row(workspace, method, 0)
+    way, moves, balls = (
+        mat(loop.travel, 2, workspace.n_ext)[0],
+        mat(loop.ball_moves, n, 5),
+        mat(loop.balls, n, BALL_NUMBERS),
+    )
+    marks, order, reach = ivec(loop.broad, MARKS), ivec(loop.ball_order, n), vec(loop.ball_reach, n)
     mean, spread = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(n):
-        _place(lc, i, start, moves[i])
+        _place(loop, i, start, moves[i])
         radius = balls[i, RADIUS]
-        moves[i, SKIN] = _skin(lc, i, _way_of_ball(lc, i, way))
+        moves[i, SKIN] = _skin(loop, i, _way_of_ball(loop, i, way))
         moves[i, GONE] = 0.0
         reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
         x, y, z = moves[i, 0], moves[i, 1], moves[i, 2]
@@ -180,19 +184,19 @@ def _sweep(ws: Any, ms: Any, lc: Any) -> None:
             both = reach[i] + reach[j]
             dx, dy, dz = moves[i, 0] - moves[j, 0], moves[i, 1] - moves[j, 1], moves[i, 2] - moves[j, 2]
             if dx * dx + dy * dy + dz * dz <= both * both:
-                _find(lc, i, j, marks[FOUND], ws)
-    _choose(ws, ms, lc, marks)
+                _find(loop, i, j, marks[FOUND], workspace)
+    _choose(workspace, method, loop, marks)
     marks[VALID] = 1
 
 
 @internal
-def _find(lc: Any, i: int, j: int, number: int, ws: Any) -> None:
+def _find(loop: Any, i: int, j: int, number: int, workspace: Any) -> None:
     """Mark the contacts of balls i and j."""
     first, last = min(i, j), max(i, j)
-    start = ivec(lc.pair_start, lc.n_balls + 1)
+    start = ivec(loop.pair_start, loop.n_balls + 1)
     low, high = start[first], start[first + 1]
-    others, contacts = ivec(lc.pair_other, start[lc.n_balls]), ivec(lc.pair_contact, start[lc.n_balls])
-    found, end = ivec(lc.pair_found, ws.n_contacts), high
+    others, contacts = ivec(loop.pair_other, start[loop.n_balls]), ivec(loop.pair_contact, start[loop.n_balls])
+    found, end = ivec(loop.pair_found, workspace.n_contacts), high
     while low < high:
         middle = (low + high) // 2
         if others[middle] < last:
@@ -205,19 +209,19 @@ def _find(lc: Any, i: int, j: int, number: int, ws: Any) -> None:
 
 
 @internal
-def _choose(ws: Any, ms: Any, lc: Any, marks: Any) -> None:
+def _choose(workspace: Any, method: Any, loop: Any, marks: Any) -> None:
     """Wake the pairs that were found, and let those sleep deeply that were not and are open."""
-    n = ws.n_contacts
-    looked, found, sleeping = ivec(ws.looked, n + 1), ivec(lc.pair_found, n), ivec(ws.sleeping, n)
-    memory, brackets, count = mat(ws.memory, n, MEMORY_SIZE), mat(lc.brackets, n, BRACKET), 0
+    n = workspace.n_contacts
+    looked, found, sleeping = ivec(workspace.looked, n + 1), ivec(loop.pair_found, n), ivec(workspace.sleeping, n)
+    memory, brackets, count = memories_at(workspace.memory, n), mat(loop.brackets, n, BRACKET), 0
     for k in range(n):
         near = found[k] < 0 or found[k] == marks[FOUND]
         if near and sleeping[k] == DEEPLY:
-            wake(ws, ms, lc, k)
-        elif not near and sleeping[k] != DEEPLY and memory[k, MODE] == OPEN:
+            wake(workspace, method, loop, k)
+        elif not near and sleeping[k] != DEEPLY and memory[k].mode == OPEN:
             sleeping[k], brackets[k, HAPPENS] = DEEPLY, 0.0
         if sleeping[k] != DEEPLY:
             count += 1
             looked[count] = k
     looked[0] = count
-    show_elements(ws)
+    show_elements(workspace)

@@ -78,9 +78,9 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
 
 
 @internal
-def probe_of(lc: Any, k: int) -> Any:
+def probe_of(loop: Any, k: int) -> Any:
     """The batch of contact k alone."""
-    return batch_at(lc.probes + BATCH_BYTES * k)
+    return batch_at(loop.probes + BATCH_BYTES * k)
 
 
 @internal
@@ -97,20 +97,20 @@ def between(q0: float, v0: float, a0: float, q1: float, v1: float, a1: float, h:
 
 
 @internal
-def _look_at_system(ws: Any, ms: Any, lc: Any, row: int, h: float, s: float, view: Any) -> None:
+def _look_at_system(workspace: Any, method: Any, loop: Any, row: int, h: float, s: float, view: Any) -> None:
     """`look` for a contact that can be evaluated with the whole system only; the workspace is put back."""
-    n, m = ws.n_ext, ws.m_ext
-    kept, levels, t = np.empty((4, n)), np.empty((3, m)), vec(ws.t, 1)
-    monitor = vec(ws.monitor, 3 * max(ws.n_contacts, 1)).copy()
-    start, now = history_row(ws, ms, 0), t[0]
-    q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
-    phi, phid, phidd = vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)
+    n, m = workspace.n_ext, workspace.m_ext
+    kept, levels, t = np.empty((4, n)), np.empty((3, m)), vec(workspace.t, 1)
+    monitor = vec(workspace.monitor, 3 * max(workspace.n_contacts, 1)).copy()
+    start, now = history_row(workspace, method, 0), t[0]
+    q, v, a, r = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.r, n)
+    phi, phid, phidd = vec(workspace.phi, m), vec(workspace.phid, m), vec(workspace.phidd, m)
     kept[0], kept[1], kept[2], kept[3] = q, v, a, r
     levels[0], levels[1], levels[2] = phi, phid, phidd
-    for i in range(ws.n):
+    for i in range(workspace.n):
         q[i], v[i], a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
-    t[0] = history_time(ms, 0) + s * h
-    evaluate_residuals(ws)
+    t[0] = history_time(method, 0) + s * h
+    evaluate_residuals(workspace)
     view[0], view[1], view[2] = phi[row], phid[row], phidd[row]
     q[:] = kept[0]
     v[:] = kept[1]
@@ -120,58 +120,60 @@ def _look_at_system(ws: Any, ms: Any, lc: Any, row: int, h: float, s: float, vie
     phid[:] = levels[1]
     phidd[:] = levels[2]
     t[0] = now
-    vec(ws.monitor, len(monitor))[:] = monitor
+    vec(workspace.monitor, len(monitor))[:] = monitor
 
 
 @internal
-def look(ws: Any, ms: Any, lc: Any, k: int, row: int, h: float, s: float, view: Any) -> None:
+def look(workspace: Any, method: Any, loop: Any, k: int, row: int, h: float, s: float, view: Any) -> None:
     """Value, rate and acceleration (3,) of row `row` of contact k at time s h of the step of size h."""
-    kind = imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
     if kind == EQUATIONS:
-        _look_at_system(ws, ms, lc, row, h, s, view)
+        _look_at_system(workspace, method, loop, row, h, s, view)
         return
-    batch, n = probe_of(lc, k), ws.n_ext
+    batch, n = probe_of(loop, k), workspace.n_ext
     coord = ivec(batch.coord, batch.count * batch.ncoord)
-    start = history_row(ws, ms, 0)
-    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
-    to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
+    start = history_row(workspace, method, 0)
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    to_q, to_v, to_a = vec(loop.probe_q, n), vec(loop.probe_v, n), vec(loop.probe_a, n)
     for i in coord:
         to_q[i], to_v[i], to_a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
     if kind == STOP:
         # its turns so far, which say of which turn the angle is
         i = imat(batch.extra, batch.count, batch.nextra)[0, ACCOUNT]
         to_v[i] = start[n + i] + s * (v[i] - start[n + i])
-    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(ms, 0) + s * h, batch)
+    call_kernel(
+        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(method, 0) + s * h, batch
+    )
     view[0], view[1], view[2] = (
-        vec(lc.probe_phi, ws.m_ext)[row],
-        vec(lc.probe_phid, ws.m_ext)[row],
-        vec(lc.probe_phidd, ws.m_ext)[row],
+        vec(loop.probe_phi, workspace.m_ext)[row],
+        vec(loop.probe_phid, workspace.m_ext)[row],
+        vec(loop.probe_phidd, workspace.m_ext)[row],
     )
 
 
 @internal
-def tell_gradients(ws: Any, lc: Any, k: int) -> None:
+def tell_gradients(workspace: Any, loop: Any, k: int) -> None:
     """Evaluate the gradients of contact k at the current point, in the mode that it has, for `gradient_alone`."""
-    batch, n, coef = probe_of(lc, k), ws.n_ext, vec(ws.coef, 2)
+    batch, n, coef = probe_of(loop, k), workspace.n_ext, vec(workspace.coef, 2)
     coord = ivec(batch.coord, batch.count * batch.ncoord)
-    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
-    to_q, to_v, to_a = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n)
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    to_q, to_v, to_a = vec(loop.probe_q, n), vec(loop.probe_v, n), vec(loop.probe_a, n)
     for i in coord:
         to_q[i], to_v[i], to_a[i] = q[i], v[i], a[i]
-    values = vec(lc.probe_values, batch.n_values)
+    values = vec(loop.probe_values, batch.n_values)
     for e in range(batch.count * batch.nrow * batch.ncoord):
         values[e] = 0.0
     coef[0] = coef[1] = 0.0
-    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], TANGENT, vec(ws.t, 1)[0], batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], TANGENT, vec(workspace.t, 1)[0], batch)
 
 
 @internal
-def gradient_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+def gradient_alone(workspace: Any, loop: Any, k: int, row: int, out: Any) -> None:
     """Gradient (n,) of row `row`, one of contact k, of which `tell_gradients` has told."""
-    batch = probe_of(lc, k)
+    batch = probe_of(loop, k)
     coord, rows = imat(batch.coord, batch.count, batch.ncoord), imat(batch.row, batch.count, batch.nrow)
-    values = vec(lc.probe_values, batch.n_values)
-    for i in range(ws.n):
+    values = vec(loop.probe_values, batch.n_values)
+    for i in range(workspace.n):
         out[i] = 0.0
     for e in range(batch.count):
         for j in range(batch.nrow):
@@ -179,46 +181,46 @@ def gradient_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
                 continue
             begin = (e * batch.nrow + j) * batch.ncoord
             for i in range(batch.ncoord):
-                if coord[e, i] < ws.n:
+                if coord[e, i] < workspace.n:
                     out[coord[e, i]] += values[begin + i]
 
 
 @internal
-def can_look(lc: Any, k: int) -> bool:
+def can_look(loop: Any, k: int) -> bool:
     """True if contact k can be evaluated alone."""
-    return bool(ivec(lc.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + KERNEL] != 0)
+    return bool(ivec(loop.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + KERNEL] != 0)
 
 
 @internal
-def pull_alone(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+def pull_alone(workspace: Any, loop: Any, k: int, row: int, out: Any) -> None:
     """What a unit normal force of contact k, whose row this is, does to the equations of motion at the current point:
     the generalized forces (n,), with all that comes with the normal force."""
-    batch, n = probe_of(lc, k), ws.n_ext
+    batch, n = probe_of(loop, k), workspace.n_ext
     coord = ivec(batch.coord, batch.count * batch.ncoord)
-    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
-    to_q, to_v, to_a, r = vec(lc.probe_q, n), vec(lc.probe_v, n), vec(lc.probe_a, n), vec(lc.probe_r, n)
-    lam = vec(lc.probe_lam, ws.m_ext)
-    for j in range(ws.n):
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    to_q, to_v, to_a, r = vec(loop.probe_q, n), vec(loop.probe_v, n), vec(loop.probe_a, n), vec(loop.probe_r, n)
+    lam = vec(loop.probe_lam, workspace.m_ext)
+    for j in range(workspace.n):
         out[j] = 0.0
     for j in range(batch.count * batch.ncoord):
         i = coord[j]
         to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
     # all that a contact adds to the residual goes with its multipliers
     lam[row] = -1.0
-    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(ws.t, 1)[0], batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(workspace.t, 1)[0], batch)
     lam[row] = 0.0
     for j in range(batch.count * batch.ncoord):
-        if coord[j] < ws.n:
+        if coord[j] < workspace.n:
             out[coord[j]] = -r[coord[j]]
 
 
 @internal
-def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, width: int, h: float, s: float, state: Any) -> None:
+def state_of_pair(workspace: Any, method: Any, loop: Any, k: int, width: int, h: float, s: float, state: Any) -> None:
     """The `width` coordinates, velocities and accelerations of the first body of contact k and of the second, one after
     the other, at s h."""
-    batch, n = probe_of(lc, k), ws.n_ext
-    coord, start = ivec(batch.coord, batch.ncoord), history_row(ws, ms, 0)
-    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
+    batch, n = probe_of(loop, k), workspace.n_ext
+    coord, start = ivec(batch.coord, batch.ncoord), history_row(workspace, method, 0)
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
     for j in range(2 * width):
         i = coord[j]
         at = j if j < width else j + 2 * width
@@ -228,25 +230,25 @@ def state_of_pair(ws: Any, ms: Any, lc: Any, k: int, width: int, h: float, s: fl
 
 
 @internal
-def rate_alone(ws: Any, lc: Any, k: int, row: int, t: float, i: int) -> float:
+def rate_alone(workspace: Any, loop: Any, k: int, row: int, t: float, i: int) -> float:
     """Rate of row `row` of contact k where it was looked at last, if coordinate i alone moved, with speed 1."""
-    batch = probe_of(lc, k)
-    coord, v = ivec(batch.coord, batch.count * batch.ncoord), vec(lc.probe_v, ws.n_ext)
+    batch = probe_of(loop, k)
+    coord, v = ivec(batch.coord, batch.count * batch.ncoord), vec(loop.probe_v, workspace.n_ext)
     for j in coord:
         v[j] = 0.0
     v[i] = 1.0
-    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
     v[i] = 0.0
-    return float(vec(lc.probe_phid, ws.m_ext)[row])
+    return float(vec(loop.probe_phid, workspace.m_ext)[row])
 
 
 @internal
-def set_travel(ws: Any, ms: Any, lc: Any, h: float) -> None:
+def set_travel(workspace: Any, method: Any, loop: Any, h: float) -> None:
     """Upper bounds of the way that each coordinate goes within the step of size h, and of h times its greatest speed:
     those of its polynomial's control points."""
-    n, start = ws.n_ext, history_row(ws, ms, 0)
-    q, v, a, travel = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), mat(lc.travel, 2, n)
-    for i in range(ws.n):
+    n, start = workspace.n_ext, history_row(workspace, method, 0)
+    q, v, a, travel = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), mat(loop.travel, 2, n)
+    for i in range(workspace.n):
         first, last = 0.2 * h * start[n + i], 0.2 * h * v[i]
         second, fourth = first + 0.05 * h * h * start[2 * n + i], last - 0.05 * h * h * a[i]
         middle = q[i] - start[i] - first - second - fourth - last

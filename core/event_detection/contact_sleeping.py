@@ -13,7 +13,7 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..methods.history import history_row, history_time
-from ..state.modes import MEMORY_SIZE, MODE, OPEN
+from ..state.modes import OPEN, memories_at
 from ..state.run_records import WATCH
 from .balls import MARKS, VALID
 from .contact_evaluation import KERNEL, NEAR_SIZE, SLEEPS, probe_of
@@ -28,51 +28,73 @@ PLAINLY = 1e-6
 
 
 @internal
-def _evaluate_alone(ws: Any, lc: Any, k: int, t: float, q: Any, v: Any, a: Any) -> None:
+def _evaluate_alone(workspace: Any, loop: Any, k: int, t: float, q: Any, v: Any, a: Any) -> None:
     """The rows of contact k at (q, v, a), to the probes' arrays."""
-    batch = probe_of(lc, k)
+    batch = probe_of(loop, k)
     coord = ivec(batch.coord, batch.count * batch.ncoord)
-    to_q, to_v, to_a = vec(lc.probe_q, ws.n_ext), vec(lc.probe_v, ws.n_ext), vec(lc.probe_a, ws.n_ext)
+    to_q, to_v, to_a = (
+        vec(loop.probe_q, workspace.n_ext),
+        vec(loop.probe_v, workspace.n_ext),
+        vec(loop.probe_a, workspace.n_ext),
+    )
     for j in range(batch.count * batch.ncoord):
         i = coord[j]
         to_q[i], to_v[i], to_a[i] = q[i], v[i], a[i]
-    call_kernel(imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
 
 
 @internal
-def look_now(ws: Any, lc: Any, k: int) -> None:
+def look_now(workspace: Any, loop: Any, k: int) -> None:
     """The rows of contact k at the current point."""
-    row, slide = ivec(ws.contact_rows, ws.n_contacts)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    _evaluate_alone(ws, lc, k, vec(ws.t, 1)[0], vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext))
-    for to, come_from in ((ws.phi, lc.probe_phi), (ws.phid, lc.probe_phid), (ws.phidd, lc.probe_phidd)):
-        values, looked = vec(to, ws.m_ext), vec(come_from, ws.m_ext)
+    row, slide = (
+        ivec(workspace.contact_rows, workspace.n_contacts)[k],
+        ivec(workspace.contact_slide_rows, workspace.n_contacts)[k],
+    )
+    _evaluate_alone(
+        workspace,
+        loop,
+        k,
+        vec(workspace.t, 1)[0],
+        vec(workspace.q, workspace.n_ext),
+        vec(workspace.v, workspace.n_ext),
+        vec(workspace.a, workspace.n_ext),
+    )
+    for to, come_from in (
+        (workspace.phi, loop.probe_phi),
+        (workspace.phid, loop.probe_phid),
+        (workspace.phidd, loop.probe_phidd),
+    ):
+        values, looked = vec(to, workspace.m_ext), vec(come_from, workspace.m_ext)
         values[row] = looked[row]
         if slide >= 0:
             values[slide] = looked[slide]
-            if in_space(ws, k):
+            if in_space(workspace, k):
                 values[slide + 1] = looked[slide + 1]
 
 
 @internal
-def wake(ws: Any, ms: Any, lc: Any, k: int) -> None:
+def wake(workspace: Any, method: Any, loop: Any, k: int) -> None:
     """Contact k is looked at again, from the newest row on."""
-    ivec(ws.sleeping, ws.n_contacts)[k] = AWAKE
-    row, slide = ivec(ws.contact_rows, ws.n_contacts)[k], ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    start, n = history_row(ws, ms, 0), ws.n_ext
-    _evaluate_alone(ws, lc, k, history_time(ms, 0), start, start[n:], start[2 * n :])
-    watch = mat(lc.watch, ws.n_contacts, WATCH)
-    rates, accelerations = vec(lc.probe_phid, ws.m_ext), vec(lc.probe_phidd, ws.m_ext)
-    watch[k, 0], watch[k, 1], watch[k, 2] = vec(lc.probe_phi, ws.m_ext)[row], rates[row], accelerations[row]
+    ivec(workspace.sleeping, workspace.n_contacts)[k] = AWAKE
+    row, slide = (
+        ivec(workspace.contact_rows, workspace.n_contacts)[k],
+        ivec(workspace.contact_slide_rows, workspace.n_contacts)[k],
+    )
+    start, n = history_row(workspace, method, 0), workspace.n_ext
+    _evaluate_alone(workspace, loop, k, history_time(method, 0), start, start[n:], start[2 * n :])
+    watch = mat(loop.watch, workspace.n_contacts, WATCH)
+    rates, accelerations = vec(loop.probe_phid, workspace.m_ext), vec(loop.probe_phidd, workspace.m_ext)
+    watch[k, 0], watch[k, 1], watch[k, 2] = vec(loop.probe_phi, workspace.m_ext)[row], rates[row], accelerations[row]
     if slide >= 0:
         watch[k, 3], watch[k, 4] = rates[slide], accelerations[slide]
-    look_now(ws, lc, k)
+    look_now(workspace, loop, k)
 
 
 @internal
-def show_elements(ws: Any) -> None:
+def show_elements(workspace: Any) -> None:
     """Let kernels go through the elements of those contacts alone that do not sleep deeply."""
-    sleeping, batches = ivec(ws.sleeping, ws.n_contacts), ivec(ws.batches, ws.n_kernels)
-    for x in range(ws.n_kernels):
+    sleeping, batches = ivec(workspace.sleeping, workspace.n_contacts), ivec(workspace.batches, workspace.n_kernels)
+    for x in range(workspace.n_kernels):
         batch = batch_at(batches[x])
         if batch.shown == 0:
             continue
@@ -85,57 +107,57 @@ def show_elements(ws: Any) -> None:
 
 
 @internal
-def wake_all(ws: Any, ms: Any, lc: Any) -> None:
+def wake_all(workspace: Any, method: Any, loop: Any) -> None:
     """No contact sleeps any more, and the broad phase begins again."""
-    sleeping, looked = ivec(ws.sleeping, ws.n_contacts), ivec(ws.looked, ws.n_contacts + 1)
-    for k in range(ws.n_contacts):
+    sleeping, looked = ivec(workspace.sleeping, workspace.n_contacts), ivec(workspace.looked, workspace.n_contacts + 1)
+    for k in range(workspace.n_contacts):
         looked[k + 1] = k
         if sleeping[k] != AWAKE:
-            wake(ws, ms, lc, k)
-    looked[0], ivec(lc.broad, MARKS)[VALID] = ws.n_contacts, 0
-    show_elements(ws)
+            wake(workspace, method, loop, k)
+    looked[0], ivec(loop.broad, MARKS)[VALID] = workspace.n_contacts, 0
+    show_elements(workspace)
 
 
 @internal
-def look_at_all(ws: Any, lc: Any) -> None:
+def look_at_all(workspace: Any, loop: Any) -> None:
     """The rows of sleeping contacts at the current point, for those who record them."""
-    sleeping = ivec(ws.sleeping, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    sleeping = ivec(workspace.sleeping, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if sleeping[k] != AWAKE:
-            look_now(ws, lc, k)
+            look_now(workspace, loop, k)
 
 
 @internal
-def sleeps_on(ws: Any, ms: Any, lc: Any, k: int) -> bool:
+def sleeps_on(workspace: Any, method: Any, loop: Any, k: int) -> bool:
     """True if contact k sleeps and its gap cannot close within the step that ends at the current point, for which
     `set_travel` and `broad_phase.keep_watch` have been called; else it is awake."""
-    sleeping = ivec(ws.sleeping, ws.n_contacts)[k]
+    sleeping = ivec(workspace.sleeping, workspace.n_contacts)[k]
     if sleeping == AWAKE:
         return False
-    if sleeping == DEEPLY or vec(lc.margin, ws.n_contacts)[k] > way_of_gap(ws, lc, k, 0):
+    if sleeping == DEEPLY or vec(loop.margin, workspace.n_contacts)[k] > way_of_gap(workspace, loop, k, 0):
         return True
-    wake(ws, ms, lc, k)
+    wake(workspace, method, loop, k)
     return False
 
 
 @internal
-def doze(ws: Any, lc: Any) -> None:
+def doze(workspace: Any, loop: Any) -> None:
     """The step that ends at the current point has been accepted: margins become smaller, and contacts that are far
     from touching fall asleep."""
-    if lc.may_sleep == 0:
+    if loop.may_sleep == 0:
         return
-    sleeping, margin = ivec(ws.sleeping, ws.n_contacts), vec(lc.margin, ws.n_contacts)
+    sleeping, margin = ivec(workspace.sleeping, workspace.n_contacts), vec(loop.margin, workspace.n_contacts)
     rows, scale, watch = (
-        ivec(ws.contact_rows, ws.n_contacts),
-        vec(ws.row_scale, ws.m_ext),
-        mat(lc.watch, ws.n_contacts, WATCH),
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        vec(workspace.row_scale, workspace.m_ext),
+        mat(loop.watch, workspace.n_contacts, WATCH),
     )
-    memory, near = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), imat(lc.near, ws.n_contacts, NEAR_SIZE)
-    looked = ivec(ws.looked, ws.n_contacts + 1)
+    memory, near = memories_at(workspace.memory, workspace.n_contacts), imat(loop.near, workspace.n_contacts, NEAR_SIZE)
+    looked = ivec(workspace.looked, workspace.n_contacts + 1)
     for p in range(looked[0]):
         k = looked[p + 1]
         if sleeping[k] != AWAKE:
-            margin[k] -= way_of_gap(ws, lc, k, 0)
-        elif memory[k, MODE] == OPEN and near[k, SLEEPS] != 0 and watch[k, 0] > PLAINLY * scale[rows[k]]:
-            if watch[k, 0] > FAR * way_of_gap(ws, lc, k, 0):
+            margin[k] -= way_of_gap(workspace, loop, k, 0)
+        elif memory[k].mode == OPEN and near[k, SLEEPS] != 0 and watch[k, 0] > PLAINLY * scale[rows[k]]:
+            if watch[k, 0] > FAR * way_of_gap(workspace, loop, k, 0):
                 sleeping[k], margin[k] = ASLEEP, watch[k, 0]

@@ -67,117 +67,121 @@ def _add_row(row: Any, base: Any, n: int, h: float, values: Any, slopes: Any, q:
 
 
 @internal
-def third_row(ms: Any) -> int:
+def third_row(method: Any) -> int:
     """The newest row that is well apart from the newest two; 0 if there is none."""
-    start = history_time(ms, 1)
-    apart = APART * (history_time(ms, 0) - start)
-    for back in range(2, rows_available(ms)):
-        if start - history_time(ms, back) >= apart:
+    start = history_time(method, 1)
+    apart = APART * (history_time(method, 0) - start)
+    for back in range(2, rows_available(method)):
+        if start - history_time(method, back) >= apart:
             return back
     return 0
 
 
 @internal
-def _interpolate_bridge(ws: Any, ms: Any, t: float) -> None:
+def _interpolate_bridge(workspace: Any, method: Any, t: float) -> None:
     """The polynomials through all points of a long step, whose nodes make that accurate."""
-    n, count = ws.n_ext, bridge_rows(ms)
-    span = history_time(ms, 0) - history_time(ms, count - 1)
-    weights, total = vec(ws.scratch, count), 0.0
+    n, count = workspace.n_ext, bridge_rows(method)
+    span = history_time(method, 0) - history_time(method, count - 1)
+    weights, total = vec(workspace.scratch, count), 0.0
     for j in range(count):
-        distance = (t - history_time(ms, j)) / span
+        distance = (t - history_time(method, j)) / span
         if distance == 0.0:
-            recall(ws, ms, j)
+            recall(workspace, method, j)
             return
         weights[j] = 1.0 / distance
         for l in range(count):
             if l != j:
-                weights[j] /= 4.0 * (history_time(ms, j) - history_time(ms, l)) / span
+                weights[j] /= 4.0 * (history_time(method, j) - history_time(method, l)) / span
         total += weights[j]
-    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    q, v, a, lam = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
     for i in range(n):
         q[i], v[i], a[i] = 0.0, 0.0, 0.0
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = 0.0
     for j in range(count):
-        row, weight = history_row(ws, ms, j), weights[j] / total
+        row, weight = history_row(workspace, method, j), weights[j] / total
         for i in range(n):
             q[i] += weight * row[i]
             v[i] += weight * row[n + i]
             a[i] += weight * row[2 * n + i]
-        for i in range(ws.m_ext):
+        for i in range(workspace.m_ext):
             lam[i] += weight * row[4 * n + i]
-    vec(ws.t, 1)[0] = t
+    vec(workspace.t, 1)[0] = t
 
 
 @compiled
-def interpolate(ws: Any, ms: Any, t: float) -> None:
+def interpolate(workspace: Any, method: Any, t: float) -> None:
     """q, v and the work accounts at t from the newest rows, into the workspace."""
-    if bridge_rows(ms) > 0:
-        _interpolate_bridge(ws, ms, t)
+    if bridge_rows(method) > 0:
+        _interpolate_bridge(workspace, method, t)
         return
-    n = ws.n_ext
-    third = third_row(ms)
+    n = workspace.n_ext
+    third = third_row(method)
     rows = 2 if third == 0 else 3
-    h = history_time(ms, 0) - history_time(ms, 1)
-    s = (t - history_time(ms, 0)) / h
-    z, values, slopes = vec(ws.scratch, 3), mat(ws.scratch + 3 * 8, 3, 3), mat(ws.scratch + 12 * 8, 3, 3)
+    h = history_time(method, 0) - history_time(method, 1)
+    s = (t - history_time(method, 0)) / h
+    z, values, slopes = (
+        vec(workspace.scratch, 3),
+        mat(workspace.scratch + 3 * 8, 3, 3),
+        mat(workspace.scratch + 12 * 8, 3, 3),
+    )
     for j in range(rows):
-        z[j] = (history_time(ms, third if j == 2 else j) - history_time(ms, 0)) / h
+        z[j] = (history_time(method, third if j == 2 else j) - history_time(method, 0)) / h
     _hermite(z, rows, ALIKE, s, values, slopes)
-    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
-    q, v = vec(ws.q, n), vec(ws.v, n)
-    for i in range(ws.n):
+    newest, older = history_row(workspace, method, 0), history_row(workspace, method, 1)
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
+    for i in range(workspace.n):
         q[i], v[i] = older[i], 0.0
     for j in range(rows):
-        row = history_row(ws, ms, third if j == 2 else j)
-        _add_row(row, older, n, h, values[j], slopes[j], q[: ws.n], v[: ws.n])
+        row = history_row(workspace, method, third if j == 2 else j)
+        _add_row(row, older, n, h, values[j], slopes[j], q[: workspace.n], v[: workspace.n])
     _hermite(z, rows, 2, s, values, slopes)
-    for i in range(n - ws.n_work, n):
+    for i in range(n - workspace.n_work, n):
         v[i] = older[n + i]
         for j in range(rows):
-            row = history_row(ws, ms, third if j == 2 else j)
+            row = history_row(workspace, method, third if j == 2 else j)
             v[i] += values[j, 0] * (row[n + i] - older[n + i]) + h * values[j, 1] * row[2 * n + i]
     # linear: what is shown of a method that does not meet the constraints, a first guess for the others
-    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for i in range(ws.n):
+    a, lam = vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    for i in range(workspace.n):
         a[i] = newest[2 * n + i] + s * (newest[2 * n + i] - older[2 * n + i])
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = newest[4 * n + i] + s * (newest[4 * n + i] - older[4 * n + i])
-    vec(ws.t, 1)[0] = t
+    vec(workspace.t, 1)[0] = t
 
 
 @internal
-def _find(ws: Any, ms: Any, t: float) -> int:
+def _find(workspace: Any, method: Any, t: float) -> int:
     """The point at time t between the newest two rows, or at one of them: OK, BETWEEN or SINGULAR."""
-    for back in range(min(rows_available(ms), 2)):
-        if t == history_time(ms, back):
-            recall(ws, ms, back)
-            evaluate_residuals(ws)
+    for back in range(min(rows_available(method), 2)):
+        if t == history_time(method, back):
+            recall(workspace, method, back)
+            evaluate_residuals(workspace)
             return OK
-    if rows_available(ms) < 2:
+    if rows_available(method) < 2:
         # an event just before a communication point, with no step between the two
-        if abs(t - history_time(ms, 0)) > NO_STEP * abs(t):
+        if abs(t - history_time(method, 0)) > NO_STEP * abs(t):
             return SINGULAR
-        recall(ws, ms, 0)
-        evaluate_residuals(ws)
+        recall(workspace, method, 0)
+        evaluate_residuals(workspace)
         return OK
-    interpolate(ws, ms, t)
-    if ms.exact == 0:
-        evaluate_residuals(ws)
+    interpolate(workspace, method, t)
+    if method.exact == 0:
+        evaluate_residuals(workspace)
         return OK
     return BETWEEN
 
 
 @compiled_unlocked
-def query(ws: Any, ms: Any, t: float) -> int:
+def query(workspace: Any, method: Any, t: float) -> int:
     """The point at time t between the newest two rows (or at one of them) becomes the workspace's current point.
     REANALYZE: matrices need more memory (`Workspace.give_room`) before it is asked again."""
-    status = _find(ws, ms, t)
-    return project_between(ws, False) if status == BETWEEN else status
+    status = _find(workspace, method, t)
+    return project_between(workspace, False) if status == BETWEEN else status
 
 
 @compiled_unlocked
-def query_motion(ws: Any, ms: Any, t: float) -> int:
+def query_motion(workspace: Any, method: Any, t: float) -> int:
     """The same without its accelerations, multipliers and forces: coordinates and velocities, bit for bit."""
-    status = _find(ws, ms, t)
-    return project_between(ws, True) if status == BETWEEN else status
+    status = _find(workspace, method, t)
+    return project_between(workspace, True) if status == BETWEEN else status

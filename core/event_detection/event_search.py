@@ -12,7 +12,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP, SAME_INSTANT
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
+from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.run_records import CLOCK_SIZE, FOUND_SIZE, TRIAL_STEP, call_accept, call_find_events
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS
@@ -29,53 +29,53 @@ UNKNOWN, HAPPENED, SAFE, CANDIDATE = 0.0, 1.0, 2.0, 3.0
 
 
 @internal
-def _guess(ws: Any, ms: Any, lc: Any, k: int, h: float, places: Any) -> float:
+def _guess(workspace: Any, method: Any, loop: Any, k: int, h: float, places: Any) -> float:
     """Where in the step of size h that ends at the current point the dense output says that the event is; -1: it does
     not say."""
-    mode, end = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE], places[0]
+    mode, end = memories_at(workspace.memory, workspace.n_contacts)[k].mode, places[0]
     if mode == CLOSED or (mode != OPEN and end <= 0.0 and places[2] == h):
         return -1.0
-    return dense_root(ws, ms, lc, k, h, 1.0 if mode == OPEN else -1.0, places[1], places[2])
+    return dense_root(workspace, method, loop, k, h, 1.0 if mode == OPEN else -1.0, places[1], places[2])
 
 
 @internal
-def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
+def locate(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     """End the step at the first event in it, accept that, and set `pending`; OK, or the status of a step that cannot be
     made: nothing is accepted then.
 
     The current point must be the end of the step of size TRIAL_STEP, in which events have been found.
     """
-    h = vec(lc.clock, CLOCK_SIZE)[TRIAL_STEP]
-    found, pending = mat(dr.found, ws.n_contacts, FOUND_SIZE), ivec(dr.pending, ws.n_contacts)
-    brackets = mat(lc.brackets, ws.n_contacts, BRACKET)
-    vec(dr.last_trial, 1)[0] = vec(dr.nearest, NEAREST)[0] = -1.0
-    for k in range(ws.n_contacts):
+    h = vec(loop.clock, CLOCK_SIZE)[TRIAL_STEP]
+    found, pending = mat(drive.found, workspace.n_contacts, FOUND_SIZE), ivec(drive.pending, workspace.n_contacts)
+    brackets = mat(loop.brackets, workspace.n_contacts, BRACKET)
+    vec(drive.last_trial, 1)[0] = vec(drive.nearest, NEAREST)[0] = -1.0
+    for k in range(workspace.n_contacts):
         found[k, STATE] = UNKNOWN
-    step, least = h, NO_STEP * abs(history_time(ms, 0))
-    while call_find_events(lc.find_events, ws, ms, lc, step, True):
+    step, least = h, NO_STEP * abs(history_time(method, 0))
+    while call_find_events(loop.find_events, workspace, method, loop, step, True):
         late, first, soonest = False, step, np.inf
-        for k in range(ws.n_contacts):
+        for k in range(workspace.n_contacts):
             if brackets[k, HAPPENS] == 0.0 or found[k, STATE] != UNKNOWN:
                 continue
             late = True
             # the shorter step may end where a gap is negative that the longer one has passed
             places = found[k, PLACES:]
-            places[0] = vec(ws.phi, ws.m_ext)[ivec(ws.contact_rows, ws.n_contacts)[k]]
+            places[0] = vec(workspace.phi, workspace.m_ext)[ivec(workspace.contact_rows, workspace.n_contacts)[k]]
             for i in range(3):
                 places[1 + i] = step * brackets[k, i]
-            places[4] = _guess(ws, ms, lc, k, step, places)
+            places[4] = _guess(workspace, method, loop, k, step, places)
             if places[4] >= 0.0:
                 soonest = min(soonest, places[4])
             found[k, STATE] = CANDIDATE
         if not late:
             break
-        for k in range(ws.n_contacts):
+        for k in range(workspace.n_contacts):
             if found[k, STATE] == CANDIDATE and found[k, PLACES + 4] > LATER * soonest:
                 found[k, STATE] = UNKNOWN
         nearest = np.inf
-        for k in range(ws.n_contacts):
+        for k in range(workspace.n_contacts):
             if found[k, STATE] == CANDIDATE:
-                status, size, happens = event_step(dr, ws, ms, lc, k, step, found[k, PLACES:])
+                status, size, happens = event_step(drive, workspace, method, loop, k, step, found[k, PLACES:])
                 if status != OK:
                     return status
                 # where the motion has none up to next to no time, what was seen is rounding
@@ -86,17 +86,17 @@ def locate(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
             if found[k, STATE] == HAPPENED:
                 nearest = min(nearest, found[k, SIZE])
         # no time lies between: a step to there would be none
-        at_once = least if ms.exact != 0 else AT_ONCE * h
-        if (nearest if ms.exact != 0 else first) <= at_once:
-            recall(ws, ms, 0)
-            for k in range(ws.n_contacts):
+        at_once = least if method.exact != 0 else AT_ONCE * h
+        if (nearest if method.exact != 0 else first) <= at_once:
+            recall(workspace, method, 0)
+            for k in range(workspace.n_contacts):
                 pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= at_once else 0
             return OK
         step = first
-        status = make_trial(dr, ws, ms, lc, step, h)
+        status = make_trial(drive, workspace, method, loop, step, h)
         if status != OK:
             return status
-    call_accept(dr.accept, ws, ms, lc)
-    for k in range(ws.n_contacts):
+    call_accept(drive.accept, workspace, method, loop)
+    for k in range(workspace.n_contacts):
         pending[k] = 1 if found[k, STATE] == HAPPENED and found[k, SIZE] <= step * (1.0 + SAME_INSTANT) else 0
     return OK

@@ -15,7 +15,7 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_row, history_time
 from ..methods.multistep import rows_available
 from ..rounding import AS_LONG, SLIP_EXCESS
-from ..state.modes import CLOSED, IDLE, MEMORY_SIZE, MODE, SLIDE
+from ..state.modes import CLOSED, IDLE, memories_at
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS, VIEW, between, look
@@ -40,20 +40,20 @@ def _least(m0: float, m1: float, bend: float) -> float:
 
 
 @internal
-def _margins(ws: Any, k: int, lam: Any) -> Any:
+def _margins(workspace: Any, k: int, lam: Any) -> Any:
     """(normal force, sticking friction that is left) of closed contact k, N; infinite where there is none."""
-    force, left = -lam[ivec(ws.contact_rows, ws.n_contacts)[k]], np.inf
-    most = vec(ws.contact_sticking, ws.n_contacts)[k]
-    if most > 0.0 and is_held(ws, k):
-        left = (1.0 + SLIP_EXCESS) * friction_limit(ws, k, force) - held_friction(ws, k, lam)
+    force, left = -lam[ivec(workspace.contact_rows, workspace.n_contacts)[k]], np.inf
+    most = vec(workspace.contact_sticking, workspace.n_contacts)[k]
+    if most > 0.0 and is_held(workspace, k):
+        left = (1.0 + SLIP_EXCESS) * friction_limit(workspace, k, force) - held_friction(workspace, k, lam)
     return force, left
 
 
 @internal
-def _starting(ws: Any, k: int, lam: Any) -> Any:
+def _starting(workspace: Any, k: int, lam: Any) -> Any:
     """The margins at the newest row; infinite those that are not positive there: a contact that is held closed though
     it pulls a little, for it would come back at once (`returns_at_once`), is looked at from the end of the step on."""
-    force, left = _margins(ws, k, lam)
+    force, left = _margins(workspace, k, lam)
     return force if force > 0.0 else np.inf, left if left > 0.0 else np.inf
 
 
@@ -65,24 +65,29 @@ def _bend(m0: float, m1: float, before: float, ratio: float) -> float:
 
 
 @internal
-def _solve_at(ws: Any, ms: Any, lc: Any, h: float, s: float, margins: Any) -> bool:
+def _solve_at(workspace: Any, method: Any, loop: Any, h: float, s: float, margins: Any) -> bool:
     """The margins (n_contacts, WANT) at s h in the dense output of the step; the workspace is put back."""
-    n, m = ws.n_ext, ws.m_ext
-    q, v, a, r = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.r, n)
-    lam, phi, phid, phidd = vec(ws.lam, m), vec(ws.phi, m), vec(ws.phid, m), vec(ws.phidd, m)
-    monitor, t = vec(ws.monitor, 3 * ws.n_contacts), vec(ws.t, 1)
+    n, m = workspace.n_ext, workspace.m_ext
+    q, v, a, r = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.r, n)
+    lam, phi, phid, phidd = (
+        vec(workspace.lam, m),
+        vec(workspace.phi, m),
+        vec(workspace.phid, m),
+        vec(workspace.phidd, m),
+    )
+    monitor, t = vec(workspace.monitor, 3 * workspace.n_contacts), vec(workspace.t, 1)
     states, levels, forces, now = np.empty((4, n)), np.empty((4, m)), monitor.copy(), t[0]
     states[0], states[1], states[2], states[3] = q, v, a, r
     levels[0], levels[1], levels[2], levels[3] = lam, phi, phid, phidd
-    start = history_row(ws, ms, 0)
-    for i in range(ws.n):
+    start = history_row(workspace, method, 0)
+    for i in range(workspace.n):
         q[i], v[i], a[i] = between(start[i], start[n + i], start[2 * n + i], q[i], v[i], a[i], h, s)
     for i in range(m):
         lam[i] += (1.0 - s) * (start[4 * n + i] - lam[i])
-    t[0] = history_time(ms, 0) + s * h
-    solved = call_accelerations(lc.accelerations, ws) == OK
-    for k in range(ws.n_contacts):
-        margins[k, 0], margins[k, 1] = _margins(ws, k, lam)
+    t[0] = history_time(method, 0) + s * h
+    solved = call_accelerations(loop.accelerations, workspace) == OK
+    for k in range(workspace.n_contacts):
+        margins[k, 0], margins[k, 1] = _margins(workspace, k, lam)
     q[:] = states[0]
     v[:] = states[1]
     a[:] = states[2]
@@ -97,23 +102,23 @@ def _solve_at(ws: Any, ms: Any, lc: Any, h: float, s: float, margins: Any) -> bo
 
 
 @internal
-def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
+def forces_may_vanish(workspace: Any, method: Any, loop: Any, h: float) -> bool:
     """True if a force or a margin of friction of a closed contact might be zero between the ends of the step."""
-    start, lam = history_row(ws, ms, 0)[4 * ws.n_ext :], vec(ws.lam, ws.m_ext)
-    memory, longest = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(lc.clock, CLOCK_SIZE)[MAX_STEP]
-    known = rows_available(ms) > 1
-    ratio = (history_time(ms, 0) - history_time(ms, 1)) / h if known else 1.0
-    before = history_row(ws, ms, 1)[4 * ws.n_ext :] if known else start
-    looked = ivec(ws.looked, ws.n_contacts + 1)
+    start, lam = history_row(workspace, method, 0)[4 * workspace.n_ext :], vec(workspace.lam, workspace.m_ext)
+    memory, longest = memories_at(workspace.memory, workspace.n_contacts), vec(loop.clock, CLOCK_SIZE)[MAX_STEP]
+    known = rows_available(method) > 1
+    ratio = (history_time(method, 0) - history_time(method, 1)) / h if known else 1.0
+    before = history_row(workspace, method, 1)[4 * workspace.n_ext :] if known else start
+    looked = ivec(workspace.looked, workspace.n_contacts + 1)
     for p in range(looked[0]):
         k = looked[p + 1]
-        if memory[k, MODE] != CLOSED:
+        if memory[k].mode != CLOSED:
             continue
         if not known or h > longest * (1.0 + AS_LONG):
             return True
-        force, left = _starting(ws, k, start)
-        force_end, left_end = _margins(ws, k, lam)
-        force_before, left_before = _margins(ws, k, before)
+        force, left = _starting(workspace, k, start)
+        force_end, left_end = _margins(workspace, k, lam)
+        force_before, left_before = _margins(workspace, k, before)
         if force < np.inf and _least(force, force_end, _bend(force, force_end, force_before, ratio)) < 0.0:
             return True
         if left < np.inf and _least(left, left_end, _bend(left, left_end, left_before, ratio)) < 0.0:
@@ -122,28 +127,28 @@ def forces_may_vanish(ws: Any, ms: Any, lc: Any, h: float) -> bool:
 
 
 @internal
-def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
+def forces_vanish(workspace: Any, method: Any, loop: Any, h: float, none: float) -> bool:
     """True if one does, falling below zero by more than rounding, and comes back; then the lines of `brackets` say
     where the first does.
 
     none : the work of a force, along the scale of its contact's row, below which it is none, J.
     """
-    n = ws.n_contacts
-    rows, row_scale = ivec(ws.contact_rows, n), vec(ws.row_scale, ws.m_ext)
-    memory, brackets = mat(ws.memory, n, MEMORY_SIZE), mat(lc.brackets, n, BRACKET)
+    n = workspace.n_contacts
+    rows, row_scale = ivec(workspace.contact_rows, n), vec(workspace.row_scale, workspace.m_ext)
+    memory, brackets = memories_at(workspace.memory, n), mat(loop.brackets, n, BRACKET)
     places, values = np.empty(DEPTH + 1), np.empty((DEPTH + 2, n, WANT))
     bends, left = np.full((DEPTH + 1, n, WANT), np.inf), values[DEPTH + 1]
-    longest, known = vec(lc.clock, CLOCK_SIZE)[MAX_STEP], rows_available(ms) > 1
-    ratio = (history_time(ms, 0) - history_time(ms, 1)) / h if known else 1.0
-    start, lam = history_row(ws, ms, 0)[4 * ws.n_ext :], vec(ws.lam, ws.m_ext)
+    longest, known = vec(loop.clock, CLOCK_SIZE)[MAX_STEP], rows_available(method) > 1
+    ratio = (history_time(method, 0) - history_time(method, 1)) / h if known else 1.0
+    start, lam = history_row(workspace, method, 0)[4 * workspace.n_ext :], vec(workspace.lam, workspace.m_ext)
     watched = np.empty((n, WANT), dtype=np.bool_)
     for k in range(n):
-        left[k, 0], left[k, 1] = _starting(ws, k, start)
+        left[k, 0], left[k, 1] = _starting(workspace, k, start)
         for j in range(WANT):
-            watched[k, j] = memory[k, MODE] == CLOSED and left[k, j] < np.inf
-        values[0, k, 0], values[0, k, 1] = _margins(ws, k, lam)
+            watched[k, j] = memory[k].mode == CLOSED and left[k, j] < np.inf
+        values[0, k, 0], values[0, k, 1] = _margins(workspace, k, lam)
         if known:
-            before, friction_before = _margins(ws, k, history_row(ws, ms, 1)[4 * ws.n_ext :])
+            before, friction_before = _margins(workspace, k, history_row(workspace, method, 1)[4 * workspace.n_ext :])
             bends[0, k, 0] = _bend(left[k, 0], values[0, k, 0], before, ratio)
             if left[k, 1] < np.inf:
                 bends[0, k, 1] = _bend(left[k, 1], values[0, k, 1], friction_before, ratio)
@@ -170,7 +175,7 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
             left[:] = right
             depth -= 1
             continue
-        if depth == DEPTH + 1 or not _solve_at(ws, ms, lc, h, place + 0.5 * long, values[depth]):
+        if depth == DEPTH + 1 or not _solve_at(workspace, method, loop, h, place + 0.5 * long, values[depth]):
             return False
         places[depth] = place + 0.5 * long
         solutions += 1
@@ -187,26 +192,26 @@ def forces_vanish(ws: Any, ms: Any, lc: Any, h: float, none: float) -> bool:
 
 
 @internal
-def sliding_turns(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> bool:
+def sliding_turns(workspace: Any, method: Any, loop: Any, k: int, h: float, none: float) -> bool:
     """True if the sliding velocity of closed contact k changes its sign within the step and back."""
-    slide = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, SLIDE]
-    row = ivec(ws.contact_slide_rows, ws.n_contacts)[k]
-    if is_held(ws, k) or slide == IDLE or row < 0:
+    slide = memories_at(workspace.memory, workspace.n_contacts)[k].slide_mode
+    row = ivec(workspace.contact_slide_rows, workspace.n_contacts)[k]
+    if is_held(workspace, k) or slide == IDLE or row < 0:
         return False
-    start = mat(lc.watch, ws.n_contacts, WATCH)[k]
+    start = mat(loop.watch, workspace.n_contacts, WATCH)[k]
     stack, rests, left = np.empty((DEPTH + 1, VIEW)), np.empty(DEPTH + 1), np.empty(VIEW)
     view = np.empty(VIEW)
     left[0], left[1], left[2] = 0.0, slide * start[3], slide * start[4]
     stack[0, 0] = 1.0
-    stack[0, 1] = slide * vec(ws.phid, ws.m_ext)[row]
-    stack[0, 2] = slide * vec(ws.phidd, ws.m_ext)[row]
+    stack[0, 1] = slide * vec(workspace.phid, workspace.m_ext)[row]
+    stack[0, 2] = slide * vec(workspace.phidd, workspace.m_ext)[row]
     rests[0], depth = 0.0, 1
     while depth > 0:
         right, long = stack[depth - 1], (stack[depth - 1, 0] - left[0]) * h
         c1, c2 = left[1] + long * left[2] / 3.0, right[1] - long * right[2] / 3.0
         lowered = min(c1, c2) - rests[depth - 1]
         if right[1] < -none and right[0] < 1.0:
-            bracket = mat(lc.brackets, ws.n_contacts, BRACKET)[k]
+            bracket = mat(loop.brackets, workspace.n_contacts, BRACKET)[k]
             bracket[0], bracket[1], bracket[2], bracket[HAPPENS] = left[0], right[0], right[0], 1.0
             return True
         if lowered >= -none or depth > DEPTH or long <= SHORTEST * h:
@@ -214,7 +219,7 @@ def sliding_turns(ws: Any, ms: Any, lc: Any, k: int, h: float, none: float) -> b
             depth -= 1
             continue
         middle = left[0] + 0.5 * (right[0] - left[0])
-        look(ws, ms, lc, k, row, h, middle, view)
+        look(workspace, method, loop, k, row, h, middle, view)
         stack[depth, 0], stack[depth, 1], stack[depth, 2] = middle, slide * view[1], slide * view[2]
         off = abs(stack[depth, 1] - 0.125 * (left[1] + 3.0 * (c1 + c2) + right[1]))
         rests[depth - 1], rests[depth] = 0.7 * off, 0.7 * off

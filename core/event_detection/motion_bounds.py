@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..contacts.travel3d import TURN
+from ..contacts.gap_motion_bound3d import TURN
 
 POINTS = 6
 """Control points of a polynomial of fifth degree."""

@@ -24,6 +24,7 @@ from ..contacts.cable_line import BOTH as CABLE_BOTH
 from ..contacts.cable_line import LENGTH as CABLE_LENGTH
 from ..contacts.cable_line import POINT as CABLE_POINT
 from ..contacts.cable_line import VECTORS
+from ..contacts.gap_motion_bound3d import way_of_cable, way_of_sphere
 from ..contacts.geometry_kinds import CABLE, CABLE_IN_SPACE, EQUATIONS, JOINT, LINE, LINEAR, OWN, SPHERE, STOP, TURN
 from ..contacts.line2d import BOTH as LINE_BOTH
 from ..contacts.line2d import NODES, POINTS
@@ -31,7 +32,6 @@ from ..contacts.mesh_nearest3d import OPEN
 from ..contacts.moving_point3d import ON_MESH
 from ..contacts.normal3d import KIND as SHAPES
 from ..contacts.normal3d import RADIUS_A, RADIUS_B
-from ..contacts.travel3d import way_of_cable, way_of_sphere
 from .contact_evaluation import KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
 from .motion_bounds import PLANAR, control_points
 from .separation import NODE, STATE, arms, stays_apart, width_of
@@ -49,13 +49,13 @@ BENDS = 4.0
 
 
 @internal
-def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
+def way_of_gap(workspace: Any, loop: Any, k: int, fastest: int) -> float:
     """An upper bound of how far the gap of contact k goes within the step, or (fastest = 1) of its greatest rate times
     the step; infinite where none is known."""
-    kind = imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
     if kind == EQUATIONS or kind == OWN:
         return np.inf
-    batch, way = probe_of(lc, k), mat(lc.travel, 2, ws.n_ext)[fastest]
+    batch, way = probe_of(loop, k), mat(loop.travel, 2, workspace.n_ext)[fastest]
     par, coord = mat(batch.par, batch.count, batch.npar), imat(batch.coord, batch.count, batch.ncoord)
     total = 0.0
     if kind == JOINT:
@@ -71,14 +71,14 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
         c = coord[0]
         total = way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]] + second * way[c[5]]
         if not point and way[c[2]] > 0.0:
-            q = vec(ws.q, ws.n_ext)
+            q = vec(workspace.q, workspace.n_ext)
             reach = math.hypot(q[c[3]] - q[c[0]], q[c[4]] - q[c[1]]) + second
             first = reach + way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]]
         return total + (first * way[c[2]] if way[c[2]] > 0.0 else 0.0)
     if kind == SPHERE or kind == STOP:
-        return way_of_sphere(vec(ws.q, ws.n_ext), coord[0], par[0], way)
+        return way_of_sphere(vec(workspace.q, workspace.n_ext), coord[0], par[0], way)
     if kind == CABLE_IN_SPACE:
-        return way_of_cable(vec(ws.q, ws.n_ext), coord, par, way)
+        return way_of_cable(vec(workspace.q, workspace.n_ext), coord, par, way)
     largest = 0.0
     if kind == LINE:
         for e in range(batch.count):
@@ -98,11 +98,11 @@ def way_of_gap(ws: Any, lc: Any, k: int, fastest: int) -> float:
 
 
 @internal
-def _thickness(lc: Any, k: int, kind: int) -> float:
+def _thickness(loop: Any, k: int, kind: int) -> float:
     """Up to which way within a part the rest of the polynomial is trusted, m."""
     if kind != LINE and kind != CABLE and kind != SPHERE and kind != CABLE_IN_SPACE:
         return np.inf
-    batch = probe_of(lc, k)
+    batch = probe_of(loop, k)
     par = mat(batch.par, batch.count, batch.npar)[0]
     if kind == LINE or kind == CABLE:
         both = par[LINE_BOTH if kind == LINE else CABLE_BOTH]
@@ -137,7 +137,8 @@ def _first_rest(left: Any, right: Any, tau: float) -> float:
 
 @internal
 def _excluded(
-    ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, left: Any, right: Any, sign: float, slack: float,
+    workspace: Any, method: Any, loop: Any, k: int, kind: int, row: int, h: float, left: Any, right: Any, sign: float,
+    slack: float,
     speed: float, thick: float, rest: float,
 ) -> Any:  # fmt: skip
     """(is there no root between two places, does the gap only fall there, is its polynomial somewhere negative)."""
@@ -147,7 +148,7 @@ def _excluded(
     if g0 + g1 > way:
         return True, False, False
     if width_of(kind) > 0:
-        apart, known, bends = stays_apart(ws, ms, lc, k, kind, row, h, left, right, sign, slack)
+        apart, known, bends = stays_apart(workspace, method, loop, k, kind, row, h, left, right, sign, slack)
         if apart:
             return True, False, False
     _coefficients(left, right, tau, sign, c)
@@ -166,18 +167,27 @@ def _excluded(
 
 
 @internal
-def _place(ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, s: float, node: Any) -> None:
+def _place(workspace: Any, method: Any, loop: Any, k: int, kind: int, row: int, h: float, s: float, node: Any) -> None:
     """Look at a place between the ends of the step."""
     node[:] = 0.0
     node[0] = s
-    look(ws, ms, lc, k, row, h, s, node[1 : 1 + VIEW])
+    look(workspace, method, loop, k, row, h, s, node[1 : 1 + VIEW])
     if width_of(kind) > 0:
-        state_of_pair(ws, ms, lc, k, width_of(kind), h, s, node[STATE:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, s, node[STATE:])
 
 
 @internal
 def first_root(
-    ws: Any, ms: Any, lc: Any, k: int, h: float, sign: float, start: Any, ended: bool, slack: float, bracket: Any
+    workspace: Any,
+    method: Any,
+    loop: Any,
+    k: int,
+    h: float,
+    sign: float,
+    start: Any,
+    ended: bool,
+    slack: float,
+    bracket: Any,
 ) -> bool:
     """True if `sign` times the gap of contact k goes from above zero to below within the step of size h.
 
@@ -185,24 +195,24 @@ def first_root(
     slack : up to here a gap below zero is none, m. bracket (3,) gets, in parts of the step, the place before the first
     root, one beyond it, and the deepest one after it.
     """
-    kind = imat(lc.near, ws.n_contacts, NEAR_SIZE)[k, KIND]
-    row = ivec(ws.contact_rows, ws.n_contacts)[k]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
+    row = ivec(workspace.contact_rows, workspace.n_contacts)[k]
     stack, rests, left, half = np.zeros((DEPTH, NODE)), np.empty(DEPTH), np.zeros(NODE), np.empty(7)
     right = stack[0]
     left[0], right[0] = 0.0, 1.0
     left[1], left[2], left[3] = start[0], start[1], start[2]
     right[1], right[2], right[3] = (
-        vec(ws.phi, ws.m_ext)[row],
-        vec(ws.phid, ws.m_ext)[row],
-        vec(ws.phidd, ws.m_ext)[row],
+        vec(workspace.phi, workspace.m_ext)[row],
+        vec(workspace.phid, workspace.m_ext)[row],
+        vec(workspace.phidd, workspace.m_ext)[row],
     )
     if width_of(kind) > 0:
-        state_of_pair(ws, ms, lc, k, width_of(kind), h, 0.0, left[STATE:])
-        state_of_pair(ws, ms, lc, k, width_of(kind), h, 1.0, right[STATE:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, 0.0, left[STATE:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, 1.0, right[STATE:])
     # per second, for the whole step: of lines, whose nodes are many, and of thin edges
-    speed, thick = np.inf, _thickness(lc, k, kind)
+    speed, thick = np.inf, _thickness(loop, k, kind)
     if kind == LINE or kind == CABLE or kind == CABLE_IN_SPACE or thick < np.inf:
-        speed = way_of_gap(ws, lc, k, 1) / h
+        speed = way_of_gap(workspace, loop, k, 1) / h
     rests[0] = _first_rest(left, right, h)
     # a place where it is zero but for the slack is none before the root: a low bounce would end below zero
     depth, looks, above = 1, 0, 0.0
@@ -211,7 +221,7 @@ def first_root(
         long = right[0] - left[0]
         beyond = ended if right[0] == 1.0 else sign * right[1] < -slack
         excluded, falls, dips = _excluded(
-            ws, ms, lc, k, kind, row, h, left, right, sign, slack, speed, thick, rest
+            workspace, method, loop, k, kind, row, h, left, right, sign, slack, speed, thick, rest
         )  # fmt: skip
         if not beyond and (excluded or (long <= SHORTEST and not dips) or looks > MOST_LOOKS):
             left[:] = right
@@ -220,11 +230,11 @@ def first_root(
             continue
         if (beyond and falls) or long <= SHORTEST or depth == DEPTH:
             bracket[0], bracket[1] = above, right[0]
-            _deepen(ws, ms, lc, k, kind, row, h, sign, bracket)
+            _deepen(workspace, method, loop, k, kind, row, h, sign, bracket)
             return True
         _coefficients(left, right, long * h, 1.0, half)
         middle = stack[depth]
-        _place(ws, ms, lc, k, kind, row, h, left[0] + 0.5 * long, middle)
+        _place(workspace, method, loop, k, kind, row, h, left[0] + 0.5 * long, middle)
         looks += 1
         # at the middle, of the polynomial and its slope
         value = (half[0] + half[6] + 6.0 * (half[1] + half[5]) + 15.0 * (half[2] + half[4]) + 20.0 * half[3]) / 64.0
@@ -236,7 +246,9 @@ def first_root(
 
 
 @internal
-def _deepen(ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, sign: float, bracket: Any) -> None:
+def _deepen(
+    workspace: Any, method: Any, loop: Any, k: int, kind: int, row: int, h: float, sign: float, bracket: Any
+) -> None:
     """bracket[2] = the place beyond the root where the gap turns again, or the end of the step."""
     view, low = np.empty(VIEW), bracket[1]
     reach = max(bracket[1] - bracket[0], SHORTEST)
@@ -247,7 +259,7 @@ def _deepen(ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, si
     while high < 1.0:
         high = min(high + reach, 1.0)
         reach *= 2.0
-        look(ws, ms, lc, k, row, h, high, view)
+        look(workspace, method, loop, k, row, h, high, view)
         if sign * view[1] >= 0.0:
             break
         low = high
@@ -255,7 +267,7 @@ def _deepen(ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, si
         return
     for _ in range(40):
         middle = 0.5 * (low + high)
-        look(ws, ms, lc, k, row, h, middle, view)
+        look(workspace, method, loop, k, row, h, middle, view)
         if sign * view[1] < 0.0:
             low = middle
         else:

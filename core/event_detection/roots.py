@@ -50,7 +50,7 @@ def _jumps_behind(low: float, width: float, f_low: float, f_high: float, largest
 
 @internal
 def find_root(
-    dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, slack: float,
+    drive: Any, workspace: Any, method: Any, loop: Any, k: int, what: int, sign: float, slack: float,
     low: float, high: float, floor: float, full: float,
 ) -> Any:  # fmt: skip
     """(status, size, whether it happens) of the step that ends at the root of what is positive at `low` and negative at
@@ -58,31 +58,31 @@ def find_root(
     contact has its event before it."""
     x_low, x_high, f_low, f_high, largest = low, high, np.nan, np.nan, 0.0
     # what ends one force often ends others
-    nearest = vec(dr.nearest, NEAREST)
+    nearest = vec(drive.nearest, NEAREST)
     if low <= nearest[0] < high:
         x_high, status = min(nearest[1], high), OK
         # the trial that has been made last is there for this contact too; and what is behind a jump before which the
         # step ends need not be known: steps over jumps are made in many parts
-        first_low = nearest[0] > low and (nearest[3] == 0.0 or vec(dr.last_trial, 1)[0] == nearest[0])
+        first_low = nearest[0] > low and (nearest[3] == 0.0 or vec(drive.last_trial, 1)[0] == nearest[0])
         if first_low:
-            status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
+            status, f_low = trial_value(drive, workspace, method, loop, k, what, sign, slack, nearest[0], full)
             if status == OK and f_low > 0.0 and nearest[3] == 0.0:
                 return status, nearest[2], False
         if not first_low or (status == OK and f_low > 0.0):
-            status, f_high = trial_value(dr, ws, ms, lc, k, what, sign, slack, x_high, full)
+            status, f_high = trial_value(drive, workspace, method, loop, k, what, sign, slack, x_high, full)
             if status != OK or f_high > 0.0:
                 return status, x_high, False
         if nearest[0] > low and not first_low:
-            status, f_low = trial_value(dr, ws, ms, lc, k, what, sign, slack, nearest[0], full)
+            status, f_low = trial_value(drive, workspace, method, loop, k, what, sign, slack, nearest[0], full)
         if status != OK or nearest[0] == low or f_low > 0.0:
             return status, nearest[2], nearest[3] != 0.0
         x_high, f_high, f_low = nearest[0], f_low, np.nan
-    resolved = NO_STEP * abs(history_time(ms, 0))
+    resolved = NO_STEP * abs(history_time(method, 0))
     x, last_x, last_f = 0.5 * (x_low + x_high), np.nan, np.nan
     # widths of the bracket three, two and one trials ago
     third, second, first, trials = np.inf, np.inf, x_high - x_low, 1
     for _ in range(MAX_TRIALS):
-        status, f = trial_value(dr, ws, ms, lc, k, what, sign, slack, x, full)
+        status, f = trial_value(drive, workspace, method, loop, k, what, sign, slack, x, full)
         if status != OK or abs(f) <= floor:
             return status, x, True
         largest = max(largest, abs(f))
@@ -119,7 +119,7 @@ def find_root(
             # a step takes what is at its end for a part of all of it: let the one over the jump be short
             x = x_low - SHORT * full
             _keep_nearest(nearest, x_low, x_high, x, False)
-            return make_trial(dr, ws, ms, lc, x, full), x, False
+            return make_trial(drive, workspace, method, loop, x, full), x, False
         # clearly behind it: rounding must not take back what has been passed (at the row nothing has been)
         behind = CLEARLY * resolved if at_row else max(0.1 * SHORT * full, CLEARLY * resolved)
         x = min(x_high + behind, full) if what == FORCE else x_high
@@ -127,17 +127,17 @@ def find_root(
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
     _keep_nearest(nearest, x_low, x_high, x, True)
-    return make_trial(dr, ws, ms, lc, x, full), x, True
+    return make_trial(drive, workspace, method, loop, x, full), x, True
 
 
 @internal
-def dense_root(ws: Any, ms: Any, lc: Any, k: int, h: float, sign: float, low: float, high: float) -> float:
+def dense_root(workspace: Any, method: Any, loop: Any, k: int, h: float, sign: float, low: float, high: float) -> float:
     """Size of the step at which the dense output of the one that ends at the current point, of size h, has its root
     between `low` and `high`."""
-    row, view = ivec(ws.contact_rows, ws.n_contacts)[k], np.empty(VIEW)
+    row, view = ivec(workspace.contact_rows, workspace.n_contacts)[k], np.empty(VIEW)
     x = 0.5 * (low + high)
     for _ in range(MOST_LOOKS):
-        look(ws, ms, lc, k, row, h, x / h, view)
+        look(workspace, method, loop, k, row, h, x / h, view)
         g, rate = sign * view[0], sign * view[1]
         if g > 0.0:
             low = x
@@ -154,18 +154,19 @@ def dense_root(ws: Any, ms: Any, lc: Any, k: int, h: float, sign: float, low: fl
 
 @internal
 def root_by_rate(
-    dr: Any, ws: Any, ms: Any, lc: Any, k: int, sign: float, low: float, high: float, guess: float, floor: float,
+    drive: Any, workspace: Any, method: Any, loop: Any, k: int, sign: float, low: float, high: float, guess: float,
+    floor: float,
     full: float,
 ) -> Any:  # fmt: skip
     """(status, size, found) of the step that ends at a root of the gap, by Newton's method from the dense output's: two
     or three trials where the gap crosses zero plainly. Not found: where it does not, or not between `low` and `high`.
     """
-    row, x = ivec(ws.contact_rows, ws.n_contacts)[k], guess
+    row, x = ivec(workspace.contact_rows, workspace.n_contacts)[k], guess
     for _ in range(MOST_NEWTON):
-        status, g = trial_value(dr, ws, ms, lc, k, GAP, sign, 0.0, x, full)
+        status, g = trial_value(drive, workspace, method, loop, k, GAP, sign, 0.0, x, full)
         if status != OK:
             return status, x, False
-        rate = sign * vec(ws.phid, ws.m_ext)[row]
+        rate = sign * vec(workspace.phid, workspace.m_ext)[row]
         if abs(g) <= floor and rate < 0.0:
             return OK, x, True
         if not rate < 0.0:
@@ -176,7 +177,7 @@ def root_by_rate(
             if g < 0.0:
                 # the side past the event would be found again as a crossing: end on the safe one
                 x += change - 2.0 * RESOLVED_TIME * x
-            return make_trial(dr, ws, ms, lc, x, full), x, True
+            return make_trial(drive, workspace, method, loop, x, full), x, True
         x += change
         if not low < x < high:
             return OK, x, False
@@ -185,13 +186,22 @@ def root_by_rate(
 
 @internal
 def go_back(
-    dr: Any, ws: Any, ms: Any, lc: Any, k: int, what: int, sign: float, low: float, high: float, h: float
+    drive: Any,
+    workspace: Any,
+    method: Any,
+    loop: Any,
+    k: int,
+    what: int,
+    sign: float,
+    low: float,
+    high: float,
+    h: float,
 ) -> Any:
     """(status, low, high): where the motion is ahead of its interpolant, back to where it is still on the safe side."""
     for _ in range(MOST_HALVINGS):
         if low == 0.0:
             break
-        status, f = trial_value(dr, ws, ms, lc, k, what, sign, 0.0, low, h)
+        status, f = trial_value(drive, workspace, method, loop, k, what, sign, 0.0, low, h)
         if status != OK:
             return status, low, high
         if f > 0.0:

@@ -21,12 +21,12 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat
-from ..contacts.crossing3d import BACK, STEEPEST
 from ..contacts.geometry_kinds import DISKS, OUTLINE, PLANE, RING, ROPE, SEGMENT, SPHERE, STOP
 from ..contacts.mesh_nearest3d import OPEN
 from ..contacts.moving_point3d import HOLLOW, ON_MESH, ON_RING, on_plane
 from ..contacts.normal3d import EXTENT_A, EXTENT_B, PAIR, RADIUS_A, RADIUS_B, TILT
 from ..contacts.normal3d import KIND as SHAPES
+from ..contacts.parallel_axes3d import BACK, STEEPEST
 from ..contacts.scalar_contact2d import FIRST
 from ..contacts.stop3d import LIMIT, SIGN
 from ..elements.measure3d import ANGLE, DISTANCE, POINT_A, POINT_B
@@ -111,34 +111,46 @@ def curvature(kind: int, batch: Any, g: float, sign: float) -> float:
 
 
 @internal
-def _find_normal(ws: Any, ms: Any, lc: Any, k: int, kind: int, width: int, row: int, h: float, node: Any) -> None:
+def _find_normal(
+    workspace: Any, method: Any, loop: Any, k: int, kind: int, width: int, row: int, h: float, node: Any
+) -> None:
     """The gradient of the gap at a node by the place of the second body, to NORMAL; of an
     angle none."""
     if node[KNOWN] != 0.0:
         return
-    batch, s = probe_of(lc, k), node[AT]
+    batch, s = probe_of(loop, k), node[AT]
     coord = imat(batch.coord, batch.count, batch.ncoord)[0]
     node[KNOWN] = 1.0
     node[NORMAL : NORMAL + 3] = 0.0
     if kind == STOP and int(mat(batch.par, batch.count, batch.npar)[0, SHAPES]) == ANGLE:
         return
     view = np.empty(3)
-    look(ws, ms, lc, k, row, h, s, view)
+    look(workspace, method, loop, k, row, h, s, view)
     for i in range(2 if width == PLANAR else 3):
         at = coord[width + i]
         # what is fixed to the ground has no coordinates to move
-        other = at >= ws.n
-        rate = rate_alone(ws, lc, k, row, history_time(ms, 0) + s * h, coord[i] if other else at)
+        other = at >= workspace.n
+        rate = rate_alone(workspace, loop, k, row, history_time(method, 0) + s * h, coord[i] if other else at)
         node[NORMAL + i] = -rate if other else rate
 
 
 @internal
 def stays_apart(
-    ws: Any, ms: Any, lc: Any, k: int, kind: int, row: int, h: float, left: Any, right: Any, sign: float, slack: float
+    workspace: Any,
+    method: Any,
+    loop: Any,
+    k: int,
+    kind: int,
+    row: int,
+    h: float,
+    left: Any,
+    right: Any,
+    sign: float,
+    slack: float,
 ) -> Any:
     """(is `sign` times the gap over -slack all the way between two nodes, is that known where it is so, how far it can
     bend there, m), of two rigid shapes."""
-    width, batch, tau = width_of(kind), probe_of(lc, k), (right[AT] - left[AT]) * h
+    width, batch, tau = width_of(kind), probe_of(loop, k), (right[AT] - left[AT]) * h
     par, place = mat(batch.par, batch.count, batch.npar)[0], np.empty((3, POINTS))
     arm_a, arm_b, point, extent = arms(kind, par)
     first, last = left[STATE:], right[STATE:]
@@ -167,7 +179,7 @@ def stays_apart(
         if bent == math.inf:
             known = False
             continue
-        _find_normal(ws, ms, lc, k, kind, width, row, h, node)
+        _find_normal(workspace, method, loop, k, kind, width, row, h, node)
         g, rate = sign * node[1], sign * tau * (node[2] if end == 0 else -node[2])
         n = node[NORMAL : NORMAL + 3]
         start, lowest, along = 0 if end == 0 else POINTS - 1, g, 0.0

@@ -22,61 +22,69 @@ from .report import report, room_for
 
 
 @internal
-def pass_breakpoint(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def pass_breakpoint(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Bring the current point to the breakpoint `PASSED` of the goals, just after the newest row, with accelerations
     that hold behind it, and find the contacts that are to be settled there, to `unsettled`: a status; with any but
     SETTLED only what an instant keeps has changed."""
-    events = ivec(dr.counts, COUNTS_SIZE)[EVENTS]
-    status = _pass(ev, dr, ws, ms, vec(dr.goals, GOALS_SIZE)[PASSED])
+    events = ivec(drive.counts, COUNTS_SIZE)[EVENTS]
+    status = _pass(instant, drive, workspace, method, vec(drive.goals, GOALS_SIZE)[PASSED])
     if status != SETTLED:
-        ivec(dr.counts, COUNTS_SIZE)[EVENTS] = events
+        ivec(drive.counts, COUNTS_SIZE)[EVENTS] = events
     return status
 
 
 @internal
-def _pass(ev: Any, dr: Any, ws: Any, ms: Any, t: float) -> int:
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    rates, before, active = vec(ws.phid, ws.m_ext), vec(ev.joint_rates, ws.m_act), ivec(ws.active, ws.m_act)
-    for i in range(ws.m_act):
+def _pass(instant: Any, drive: Any, workspace: Any, method: Any, t: float) -> int:
+    recall(workspace, method, 0)
+    evaluate_residuals(workspace)
+    rates, before, active = (
+        vec(workspace.phid, workspace.m_ext),
+        vec(instant.joint_rates, workspace.m_act),
+        ivec(workspace.active, workspace.m_act),
+    )
+    for i in range(workspace.m_act):
         before[i] = rates[active[i]]
-    vec(ws.t, 1)[0] = t
-    evaluate_residuals(ws)
-    moved, status = ivec(ev.unsettled, ws.n_contacts), SETTLED
-    clear(moved, ws.n_contacts)
-    some = find_moved(ws, ms, moved)
-    if _jumps(dr, ws, before, moved, t):
+    vec(workspace.t, 1)[0] = t
+    evaluate_residuals(workspace)
+    moved, status = ivec(instant.unsettled, workspace.n_contacts), SETTLED
+    clear(moved, workspace.n_contacts)
+    some = find_moved(workspace, method, moved)
+    if _jumps(drive, workspace, before, moved, t):
         if some:
-            release_sticking(ws, moved)
-            status = call_part(ev.use_modes, ev, dr, ws, ms)
+            release_sticking(workspace, moved)
+            status = call_part(instant.use_modes, instant, drive, workspace, method)
             if status != SETTLED:
                 return int(status)
-        v, energy = vec(ws.v, ws.n_ext), vec(ws.energy, 3)
-        evaluate_energy(ws)
+        v, energy = vec(workspace.v, workspace.n_ext), vec(workspace.energy, 3)
+        evaluate_energy(workspace)
         kinetic = energy[0]
-        if not meet(ws, True):
+        if not meet(workspace, True):
             return NOT_MET
-        evaluate_energy(ws)
-        if dr.input_account >= 0:
-            v[dr.input_account] += energy[0] - kinetic
-    status = call_part(ev.use_modes, ev, dr, ws, ms)
+        evaluate_energy(workspace)
+        if drive.input_account >= 0:
+            v[drive.input_account] += energy[0] - kinetic
+    status = call_part(instant.use_modes, instant, drive, workspace, method)
     if status != SETTLED:
         return int(status)
-    return SETTLED if call_accelerations(dr.accelerations, ws) == OK else NO_ACCELERATIONS
+    return SETTLED if call_accelerations(drive.accelerations, workspace) == OK else NO_ACCELERATIONS
 
 
 @internal
-def _jumps(dr: Any, ws: Any, before: Any, moved: Any, t: float) -> bool:
+def _jumps(drive: Any, workspace: Any, before: Any, moved: Any, t: float) -> bool:
     """True if the rate of an active row has jumped, but for contacts whose surfaces have `moved`; drivers that strike
     are reported. (What a method without velocity constraints has violated before is no jump.)"""
-    rates, scale, active = vec(ws.phid, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ws.active, ws.m_act)
-    least, found = CONTINUOUS * rate_level(ws), False
-    for i in range(ws.m_act):
+    rates, scale, active = (
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.row_scale, workspace.m_ext),
+        ivec(workspace.active, workspace.m_act),
+    )
+    least, found = CONTINUOUS * rate_level(workspace), False
+    for i in range(workspace.m_act):
         jumps = abs(rates[active[i]] - before[i]) > least * scale[active[i]]
-        found = found or (jumps and not is_moved_row(ws, moved, active[i]))
+        found = found or (jumps and not is_moved_row(workspace, moved, active[i]))
     if found:
-        for i in range(ws.m_act):
+        for i in range(workspace.m_act):
             row = active[i]
-            if row < dr.joint_rows and abs(rates[row]) > least * scale[row] and room_for(dr, 1):
-                report(dr, t, JUMPS, row, 0.0, 0.0, -rates[row], 0.0, 0.0, 0.0)
+            if row < drive.joint_rows and abs(rates[row]) > least * scale[row] and room_for(drive, 1):
+                report(drive, t, JUMPS, row, 0.0, 0.0, -rates[row], 0.0, 0.0, 0.0)
     return found

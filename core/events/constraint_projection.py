@@ -8,12 +8,12 @@ from ..compiled.jit import internal
 
 
 @internal
-def meet_constraints(ws: Any) -> bool:
+def meet_constraints(workspace: Any) -> bool:
     """Bring positions and velocities onto the constraints of the present structure, by rounding's worth; False if they
     cannot be met."""
     for level in range(2):
-        evaluate_residuals(ws)
-        if not meet(ws, level == 1):
+        evaluate_residuals(workspace)
+        if not meet(workspace, level == 1):
             return False
-    evaluate_residuals(ws)
+    evaluate_residuals(workspace)
     return True

@@ -8,8 +8,8 @@ no friction.
 
 from typing import Any
 
-from ..assembly.compatibility import analyze_equations, solve_equations
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.redundant_reactions import analyze_equations, solve_equations
 from ..assembly.sticking_force import in_space
 from ..assembly.structure_switch import engage_modes
 from ..compiled.jit import internal
@@ -17,75 +17,82 @@ from ..compiled.views import ivec, mat, vec
 from ..event_detection.contact_evaluation import can_look, tell_gradients
 from ..linalg.record import WANT_ROOM
 from ..rounding import IMMOVABLE
-from ..state.modes import AXIS, CLOSED, MEMORY_SIZE, MODE, OPEN, RATIO, SLIDE
+from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.modes import STICKS as STUCK
 from ..state.run_records import loop_at
 from ..state.workspace_records import OK
 from .rates import masses, read_all_rates
-from .records import ALONE, COUNT, SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, whole
+from .records import SINGULAR_JOINTS, WANT_MEMORY, clear, delassus, scalars
 from .spins import read_spins
 from .torques import find_torques, press_with_torques
 from .touching import entries_of, find_gradient, refuse_immovable, tell_touching
 
 
 @internal
-def open_touching(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def open_touching(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Open the touching contacts, and find how impulses at them, along normals and both tangents, move the others."""
-    count, contacts, n = whole(ev)[COUNT], ivec(ev.contacts, ev.most), ws.n
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    count, contacts, n = scalars(instant).count, ivec(instant.contacts, instant.most), workspace.n
+    memory = memories_at(workspace.memory, workspace.n_contacts)
     for i in range(count):
         k = contacts[i]
-        memory[k, MODE], memory[k, SLIDE], memory[k, RATIO] = OPEN, STUCK, 0.0
-        if in_space(ws, k):
+        memory[k].mode, memory[k].slide_mode, memory[k].friction_ratio = OPEN, STUCK, 0.0
+        if in_space(workspace, k):
             # directions and rates are to speak of the same tangents
-            memory[k, AXIS] = 0.0
-    if engage_modes(ws) != OK:
+            memory[k].tangent_axis = 0.0
+    if engage_modes(workspace) != OK:
         return WANT_MEMORY
     # the rows of those that slid or stuck now tell both velocities
-    evaluate_residuals(ws)
-    lc = loop_at(dr.loop)
-    find_torques(ev, ws, lc, count)
-    read_spins(ev, dr, ws)
+    evaluate_residuals(workspace)
+    loop = loop_at(drive.loop)
+    find_torques(instant, workspace, loop, count)
+    read_spins(instant, drive, workspace)
     for i in range(count):
-        memory[contacts[i], MODE] = CLOSED
-    tell_touching(ev, ws, lc)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    static, directions = vec(ws.contact_sticking, ws.n_contacts), mat(ev.directions, 3 * count, n)
+        memory[contacts[i]].mode = CLOSED
+    tell_touching(instant, workspace, loop)
+    rows, slides = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        ivec(workspace.contact_slide_rows, workspace.n_contacts),
+    )
+    static, directions = vec(workspace.contact_sticking, workspace.n_contacts), mat(instant.directions, 3 * count, n)
     for i in range(count):
         k = contacts[i]
-        if can_look(lc, k):
-            tell_gradients(ws, lc, k)
-        find_gradient(ws, lc, k, rows[k], directions[i])
+        if can_look(loop, k):
+            tell_gradients(workspace, loop, k)
+        find_gradient(workspace, loop, k, rows[k], directions[i])
         for block in range(2):
             to = directions[(block + 1) * count + i]
-            if slides[k] >= 0 and static[k] > 0.0 and (block == 0 or in_space(ws, k)):
-                find_gradient(ws, lc, k, slides[k] + block, to)
+            if slides[k] >= 0 and static[k] > 0.0 and (block == 0 or in_space(workspace, k)):
+                find_gradient(workspace, loop, k, slides[k] + block, to)
             else:
                 clear(to, n)
-        memory[k, MODE] = OPEN
-    evaluate_tangent(ws, 0.0, 0.0)
-    code = analyze_equations(ws, ws.kkt_query)
+        memory[k].mode = OPEN
+    evaluate_tangent(workspace, 0.0, 0.0)
+    code = analyze_equations(workspace, workspace.kkt_query)
     if code != OK:
         return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
-    _respond(ev, ws, count)
-    read_all_rates(ev, ws)
-    return refuse_immovable(ev, ws, count)
+    _respond(instant, workspace, count)
+    read_all_rates(instant, workspace)
+    return refuse_immovable(instant, workspace, count)
 
 
 @internal
-def _respond(ev: Any, ws: Any, count: int) -> None:
-    n, directions, responses = ws.n, mat(ev.directions, 3 * count, ws.n), mat(ev.responses, 3 * count, ws.n)
-    a, plane, rhs = masses(ev, count), delassus(ev, count), vec(ws.rhs, n + ws.m_act)
+def _respond(instant: Any, workspace: Any, count: int) -> None:
+    n, directions, responses = (
+        workspace.n,
+        mat(instant.directions, 3 * count, workspace.n),
+        mat(instant.responses, 3 * count, workspace.n),
+    )
+    a, plane, rhs = masses(instant, count), delassus(instant, count), vec(workspace.rhs, n + workspace.m_act)
     for i in range(3 * count):
         for j in range(n):
             rhs[j] = directions[i, j]
-        for j in range(ws.m_act):
+        for j in range(workspace.m_act):
             rhs[n + j] = 0.0
-        solve_equations(ws, ws.kkt_query)
+        solve_equations(workspace, workspace.kkt_query)
         for j in range(n):
             responses[i, j] = rhs[j]
-    some = ivec(ev.columns, n)
-    alone = whole(ev)[ALONE] != 0
+    some = ivec(instant.columns, n)
+    alone = scalars(instant).diagonal_only != 0
     for i in range(3 * count):
         entries = entries_of(directions[i], n, some)
         for j in range(i if alone else 0, i + 1 if alone else 3 * count):
@@ -109,4 +116,4 @@ def _respond(ev: Any, ws: Any, count: int) -> None:
         for j in range(i if alone else 0, i + 1 if alone else 2 * count):
             plane[i, j] = a[i, j]
     if not alone:
-        press_with_torques(ev, ws, count)
+        press_with_torques(instant, workspace, count)

@@ -13,7 +13,7 @@ from ..compiled.views import ivec, mat, vec
 from ..event_detection.contact_sleeping import look_at_all
 from ..event_detection.crossings import remember
 from ..methods.history import history_time, recall, replace, restart
-from ..state.modes import LOSS_JUMP, MEMORY_SIZE, MODE
+from ..state.modes import MEMORY_SIZE, memories_at
 from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
@@ -29,28 +29,13 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
 from .breakpoint import pass_breakpoint
-from .decide import decide
+from .impact_law_codes import FORCE, MASSLESS
 from .inconsistent_modes import find_pending, find_unsettled
-from .laws import FORCE, MASSLESS
 from .massless import settle_massless
+from .mode_selection import decide
 from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
 from .progress import COUNT as GUARDED
-from .records import (
-    DECLINED,
-    MET_LOSS,
-    NO_IMPACT,
-    NOT_MET,
-    SETTLED,
-    STILL_APPROACHES,
-    TOUCHED,
-    TOUCHED_IN_SPACE,
-    UNSHARED,
-    call_part,
-    clear,
-    copy,
-    real,
-    whole,
-)
+from .records import DECLINED, NO_IMPACT, NOT_MET, SETTLED, call_part, clear, copy, scalars
 from .report import MOST_EVENTS, report_not_found, room_for
 from .zeno import MANY_TOUCH, count_instant, may_push
 
@@ -59,190 +44,192 @@ UNSEEN = 1e-8
 
 
 @internal
-def begin_anew(ws: Any, ms: Any, lc: Any) -> None:
+def begin_anew(workspace: Any, method: Any, loop: Any) -> None:
     """A history that begins at the current point, whose accelerations are known."""
-    _know_rates(ws)
-    restart(ws, ms)
-    remember(ws, lc)
+    _know_rates(workspace)
+    restart(workspace, method)
+    remember(workspace, loop)
 
 
 @internal
-def _go_on(ws: Any, ms: Any, lc: Any) -> None:
+def _go_on(workspace: Any, method: Any, loop: Any) -> None:
     """The current point, whose accelerations are known, in place of the newest row."""
-    _know_rates(ws)
-    replace(ws, ms)
-    remember(ws, lc)
+    _know_rates(workspace)
+    replace(workspace, method)
+    remember(workspace, loop)
 
 
 @internal
-def _know_rates(ws: Any) -> None:
-    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
-    evaluate_power(ws)
-    for i in range(ws.n_ext):
+def _know_rates(workspace: Any) -> None:
+    a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
+    evaluate_power(workspace)
+    for i in range(workspace.n_ext):
         aux[i] = a[i]
-    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
 
 
 @internal
-def settle(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Let the pending events happen at the newest row: a status of `records`."""
-    t, counts, goals = history_time(ms, 0), ivec(dr.counts, COUNTS_SIZE), vec(dr.goals, GOALS_SIZE)
-    room = lc.capacity == 0 or ivec(lc.cursor, 1)[0] < lc.capacity
-    if not room or not room_for(dr, MOST_EVENTS * ws.n_contacts):
+    t, counts, goals = history_time(method, 0), ivec(drive.counts, COUNTS_SIZE), vec(drive.goals, GOALS_SIZE)
+    room = loop.capacity == 0 or ivec(loop.cursor, 1)[0] < loop.capacity
+    if not room or not room_for(drive, MOST_EVENTS * workspace.n_contacts):
         return DECLINED
-    if not _gets_on(dr, t):
-        return int(call_part(ev.step_through, ev, dr, ws, ms))
-    _keep(ev, ws, False)
-    step = vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
+    if not _gets_on(drive, t):
+        return int(call_part(instant.step_through, instant, drive, workspace, method))
+    _keep(instant, workspace, False)
+    step = vec(loop.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    modes = vec(ev.modes, ws.n_contacts)
-    for k in range(ws.n_contacts):
-        modes[k] = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k, MODE]
+    recall(workspace, method, 0)
+    evaluate_residuals(workspace)
+    modes = vec(instant.modes, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
+        modes[k] = memories_at(workspace.memory, workspace.n_contacts)[k].mode
     # structures are not given up as long as this may be the one to come back to
-    structure = ws.structure
-    ws.kept = structure
+    structure = workspace.structure
+    workspace.kept = structure
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
-    whole(ev)[TOUCHED], pushing = 0, vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
-    whole(ev)[TOUCHED_IN_SPACE] = whole(ev)[UNSHARED] = whole(ev)[STILL_APPROACHES] = 0
-    begun, status = vec(lc.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
-    if _any_force(dr, ws):
+    scalars(instant).touched, pushing = 0, vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    scalars(instant).touched_in_space = scalars(instant).unshared_contact = scalars(instant).approaching_contact = 0
+    begun, status = vec(loop.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
+    if _any_force(drive, workspace):
         status = (
-            _settle_forces_where_they_are(ev, dr, ws, ms) if pushing else call_part(ev.settle_forces, ev, dr, ws, ms)
+            _settle_forces_where_they_are(instant, drive, workspace, method)
+            if pushing
+            else call_part(instant.settle_forces, instant, drive, workspace, method)
         )
     if status == SETTLED:
-        status = settle_massless(ev, dr, ws, ms)
+        status = settle_massless(instant, drive, workspace, method)
     if status == SETTLED and pushing:
-        clear(ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
-        if _any_constraint(dr, ws):
-            status = call_part(ev.push_apart, ev, dr, ws, ms)
-    elif status == SETTLED and _any_constraint(dr, ws):
-        status = decide(ev, dr, ws, ms, lc)
-    if status == SETTLED and not pushing and _loses_unseen(ev, ws) and may_push(dr, ws, ms):
+        clear(ivec(instant.unsettled, workspace.n_contacts), workspace.n_contacts)
+        if _any_constraint(drive, workspace):
+            status = call_part(instant.push_apart, instant, drive, workspace, method)
+    elif status == SETTLED and _any_constraint(drive, workspace):
+        status = decide(instant, drive, workspace, method, loop)
+    if status == SETTLED and not pushing and _loses_unseen(instant, workspace) and may_push(drive, workspace, method):
         status = NOT_MET
     if status == SETTLED and not pushing:
-        status = find_pending(ev, dr, ws, ms, lc)
-    ws.kept, touched = 0, whole(ev)[TOUCHED]
+        status = find_pending(instant, drive, workspace, method, loop)
+    workspace.kept, touched = 0, scalars(instant).touched
     if status != SETTLED:
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
-        _put_back(ev, ws, ms, structure)
-        vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = step
+        _put_back(instant, workspace, method, structure)
+        vec(loop.clock, CLOCK_SIZE)[STEP_SIZE] = step
         many = status >= NO_IMPACT and not pushing and touched >= MANY_TOUCH
-        if many and call_part(ev.step_through, ev, dr, ws, ms) == SETTLED:
+        if many and call_part(instant.step_through, instant, drive, workspace, method) == SETTLED:
             return SETTLED
         return status
     if pushing and not begun:
         # what lies between two steps of impulses is between what they have left
-        _go_on(ws, ms, lc)
+        _go_on(workspace, method, loop)
     else:
-        begin_anew(ws, ms, lc)
-    _count(dr, t)
-    report_not_found(ev, dr, ws, t)
+        begin_anew(workspace, method, loop)
+    _count(drive, t)
+    report_not_found(instant, drive, workspace, t)
     crowds = False
     if not pushing:
-        crowds = count_instant(ws, lc, t, touched, whole(ev)[TOUCHED_IN_SPACE] >= MANY_TOUCH)
-    copy(ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts), ws.n_contacts)
+        crowds = count_instant(workspace, loop, t, touched, scalars(instant).touched_in_space >= MANY_TOUCH)
+    copy(ivec(drive.pending, workspace.n_contacts), ivec(instant.unsettled, workspace.n_contacts), workspace.n_contacts)
     if crowds:
-        call_part(ev.step_through, ev, dr, ws, ms)
-    _sample(dr, ws, lc)
+        call_part(instant.step_through, instant, drive, workspace, method)
+    _sample(drive, workspace, loop)
     return SETTLED
 
 
 @internal
-def _settle_forces_where_they_are(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def _settle_forces_where_they_are(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Forces that begin and end among steps of impulses, which may have moved their gaps beyond zero: what springs hold
     there all at once is in the contacts' accounts."""
-    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
-    memory, energy, count = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.energy, 3), 0
-    evaluate_energy(ws)
+    law, pending = ivec(drive.law, workspace.n_contacts), ivec(drive.pending, workspace.n_contacts)
+    memory, energy, count = memories_at(workspace.memory, workspace.n_contacts), vec(workspace.energy, 3), 0
+    evaluate_energy(workspace)
     more = energy[0] + energy[1] + energy[2]
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE and pending[k] != 0:
             count += 1
-            more += memory[k, LOSS_JUMP]
-    status = int(call_part(ev.settle_forces, ev, dr, ws, ms))
+            more += memory[k].loss_jump
+    status = int(call_part(instant.settle_forces, instant, drive, workspace, method))
     if status != SETTLED:
         return status
-    evaluate_energy(ws)
+    evaluate_energy(workspace)
     more -= energy[0] + energy[1] + energy[2]
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE and pending[k] != 0:
-            more -= memory[k, LOSS_JUMP]
-    for k in range(ws.n_contacts):
+            more -= memory[k].loss_jump
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE and pending[k] != 0:
-            memory[k, LOSS_JUMP] += more / count
+            memory[k].loss_jump += more / count
     return status
 
 
 @internal
-def _loses_unseen(ev: Any, ws: Any) -> bool:
+def _loses_unseen(instant: Any, workspace: Any) -> bool:
     """True if many touch in space, and bringing them onto their new constraints has changed the energy by more than
     rounding. (In the plane what is lost so is next to nothing, and events get on.)"""
-    most = UNSEEN * vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
-    return bool(whole(ev)[TOUCHED_IN_SPACE] >= MANY_TOUCH and abs(real(ev)[MET_LOSS]) > most)
+    most = UNSEEN * vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE]
+    return bool(scalars(instant).touched_in_space >= MANY_TOUCH and abs(scalars(instant).projection_loss) > most)
 
 
 @internal
-def begin_pending_forces(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+def begin_pending_forces(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Let the force laws of pending contacts act from the current point on, at the start; where something is wanted,
     nothing has happened."""
-    _keep(ev, ws, False)
-    events, step = ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE]
-    structure = ws.structure
-    ws.kept = structure
-    status = int(call_part(ev.settle_forces, ev, dr, ws, ms))
-    ws.kept = 0
+    _keep(instant, workspace, False)
+    events, step = ivec(drive.counts, COUNTS_SIZE)[EVENTS], vec(loop.clock, CLOCK_SIZE)[STEP_SIZE]
+    structure = workspace.structure
+    workspace.kept = structure
+    status = int(call_part(instant.settle_forces, instant, drive, workspace, method))
+    workspace.kept = 0
     if status == SETTLED:
-        begin_anew(ws, ms, lc)
+        begin_anew(workspace, method, loop)
         return status
-    _put_back(ev, ws, ms, structure)
-    ivec(dr.counts, COUNTS_SIZE)[EVENTS], vec(lc.clock, CLOCK_SIZE)[STEP_SIZE] = events, step
+    _put_back(instant, workspace, method, structure)
+    ivec(drive.counts, COUNTS_SIZE)[EVENTS], vec(loop.clock, CLOCK_SIZE)[STEP_SIZE] = events, step
     return status
 
 
 @internal
-def go_on_behind(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+def go_on_behind(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Go on behind the breakpoint that is due; closed contacts that do not fit the new forces, or surfaces that have
     jumped in speed, are pending."""
-    _keep(ev, ws, False)
-    structure = ws.structure
-    ws.kept = structure
-    status = pass_breakpoint(ev, dr, ws, ms)
-    ws.kept = 0
+    _keep(instant, workspace, False)
+    structure = workspace.structure
+    workspace.kept = structure
+    status = pass_breakpoint(instant, drive, workspace, method)
+    workspace.kept = 0
     if status != SETTLED:
-        _put_back(ev, ws, ms, structure)
+        _put_back(instant, workspace, method, structure)
         return status
-    begin_anew(ws, ms, lc)
-    pending, moved = ivec(dr.pending, ws.n_contacts), ivec(ev.unsettled, ws.n_contacts)
-    unsettled = find_unsettled(ev, ws, pending)
-    for k in range(ws.n_contacts):
+    begin_anew(workspace, method, loop)
+    pending, moved = ivec(drive.pending, workspace.n_contacts), ivec(instant.unsettled, workspace.n_contacts)
+    unsettled = find_unsettled(instant, workspace, pending)
+    for k in range(workspace.n_contacts):
         if moved[k] != 0:
             pending[k], unsettled = 1, True
     if not unsettled:
-        _sample(dr, ws, lc)
+        _sample(drive, workspace, loop)
     return SETTLED
 
 
 @internal
-def _put_back(ev: Any, ws: Any, ms: Any, structure: int) -> None:
+def _put_back(instant: Any, workspace: Any, method: Any, structure: int) -> None:
     """As it was before the instant."""
-    if ws.structure != structure:
-        take_structure(ws, structure)
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    _keep(ev, ws, True)
+    if workspace.structure != structure:
+        take_structure(workspace, structure)
+    recall(workspace, method, 0)
+    evaluate_residuals(workspace)
+    _keep(instant, workspace, True)
 
 
 @internal
-def _keep(ev: Any, ws: Any, back: bool) -> None:
+def _keep(instant: Any, workspace: Any, back: bool) -> None:
     """What an instant changes of the state, besides what the newest row holds: kept, or put `back`."""
-    size = ws.n_contacts * MEMORY_SIZE
-    memory, kept = vec(ws.memory, size), vec(ev.kept_memory, size)
-    rate, kept_rate = vec(ws.rate, RATE_SIZE), vec(ev.kept_rate, RATE_SIZE)
-    counters, kept_counters = ivec(ws.counters, COUNTERS_SIZE), ivec(ev.kept_counters, COUNTERS_SIZE)
+    size = workspace.n_contacts * MEMORY_SIZE
+    memory, kept = vec(workspace.memory, size), vec(instant.kept_memory, size)
+    rate, kept_rate = vec(workspace.rate, RATE_SIZE), vec(instant.kept_rate, RATE_SIZE)
+    counters, kept_counters = ivec(workspace.counters, COUNTERS_SIZE), ivec(instant.kept_counters, COUNTERS_SIZE)
     if back:
         copy(memory, kept, size)
         copy(rate, kept_rate, RATE_SIZE)
@@ -255,29 +242,29 @@ def _keep(ev: Any, ws: Any, back: bool) -> None:
 
 
 @internal
-def _any_force(dr: Any, ws: Any) -> bool:
+def _any_force(drive: Any, workspace: Any) -> bool:
     """True if a contact with a force law is pending."""
-    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    law, pending = ivec(drive.law, workspace.n_contacts), ivec(drive.pending, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE and pending[k] != 0:
             return True
     return False
 
 
 @internal
-def _any_constraint(dr: Any, ws: Any) -> bool:
+def _any_constraint(drive: Any, workspace: Any) -> bool:
     """True if a contact constraint with mass on both sides is pending."""
-    law, pending = ivec(dr.law, ws.n_contacts), ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    law, pending = ivec(drive.law, workspace.n_contacts), ivec(drive.pending, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if pending[k] != 0 and law[k] != MASSLESS and law[k] != FORCE:
             return True
     return False
 
 
 @internal
-def _gets_on(dr: Any, t: float) -> bool:
+def _gets_on(drive: Any, t: float) -> bool:
     """False if the guard against runs that events keep from going on would speak (`events/progress.py`)."""
-    goals, counts, guard = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
+    goals, counts, guard = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
     if t == goals[HANDLED_AT] and counts[HERE] >= AT_ONCE:
         return False
     if guard[GUARDED] < IN_A_ROW:
@@ -286,9 +273,9 @@ def _gets_on(dr: Any, t: float) -> bool:
 
 
 @internal
-def _count(dr: Any, t: float) -> None:
+def _count(drive: Any, t: float) -> None:
     """One more instant."""
-    counts, guard = ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
+    counts, guard = ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
     counts[HANDLED] += 1
     guard[GUARDED] += 1.0
     if guard[GUARDED] > IN_A_ROW:
@@ -296,9 +283,9 @@ def _count(dr: Any, t: float) -> None:
 
 
 @internal
-def _sample(dr: Any, ws: Any, lc: Any) -> None:
-    if lc.capacity > 0:
-        cursor = ivec(lc.cursor, 1)
-        look_at_all(ws, lc)
-        call_sample(dr.write_sample, ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
+def _sample(drive: Any, workspace: Any, loop: Any) -> None:
+    if loop.capacity > 0:
+        cursor = ivec(loop.cursor, 1)
+        look_at_all(workspace, loop)
+        call_sample(drive.write_sample, workspace, mat(loop.samples, loop.capacity, loop.sample_length)[cursor[0]])
         cursor[0] += 1

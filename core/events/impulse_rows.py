@@ -7,25 +7,10 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
 from ..contact_solvers.contact_blocks import blocks_at, pack_contacts
 from ..contact_solvers.row_sweeps import along, list_columns
-from ..state.modes import GAP_START, MEMORY_SIZE, PUSHED
+from ..state.modes import memories_at
 from ..state.run_records import loop_at
 from .rates import masses
-from .records import (
-    ALONE,
-    COUNT,
-    GAP,
-    LARGEST,
-    RATE,
-    SETTLED,
-    SLIDE_RATE,
-    SWAY_RATE,
-    TURNS,
-    call_part,
-    clear,
-    col,
-    real,
-    whole,
-)
+from .records import SETTLED, call_part, clear, scalars, touching
 from .turning_rows import TURNING_ROWS, find_turning_rows
 from .zeno import near_level
 
@@ -38,88 +23,107 @@ ROW_ROOM = ROW_NUMBERS + 3
 
 
 @internal
-def part(ev: Any, rows: int, k: int) -> Any:
+def part(instant: Any, rows: int, k: int) -> Any:
     """One of the `ROW_NUMBERS` of each row."""
-    return vec(ev.sweeps + 8 * rows * k, rows)
+    return vec(instant.sweeps + 8 * rows * k, rows)
 
 
 @internal
-def room(ev: Any, rows: int, n: int) -> Any:
+def room(instant: Any, rows: int, n: int) -> Any:
     """To work in."""
-    return vec(ev.sweeps + 8 * rows * ROW_NUMBERS, 3 * rows + 2 * n)
+    return vec(instant.sweeps + 8 * rows * ROW_NUMBERS, 3 * rows + 2 * n)
 
 
 @internal
-def rows_of(ev: Any, ws: Any) -> int:
+def rows_of(instant: Any, workspace: Any) -> int:
     """How many there are."""
-    turns = TURNING_ROWS if whole(ev)[TURNS] != 0 else 0
-    return int((3 + turns) * whole(ev)[COUNT])
+    turns = TURNING_ROWS if scalars(instant).contact_torques != 0 else 0
+    return int((3 + turns) * scalars(instant).count)
 
 
 @internal
-def open_rows(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def open_rows(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Open the touching contacts, and find what impulses at them, and torques against turning, do to the motion."""
-    count, contacts = whole(ev)[COUNT], ivec(ev.contacts, ev.most)
-    whole(ev)[ALONE] = 1
-    status = call_part(ev.open_touching, ev, dr, ws, ms)
-    whole(ev)[ALONE] = 0
+    count, contacts = scalars(instant).count, ivec(instant.contacts, instant.most)
+    scalars(instant).diagonal_only = 1
+    status = call_part(instant.open_touching, instant, drive, workspace, method)
+    scalars(instant).diagonal_only = 0
     if status != SETTLED:
         return int(status)
     for i in range(count):
-        mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], GAP_START] = 0.0
-    rows = rows_of(ev, ws)
-    arms = part(ev, rows, ARM)
+        memories_at(workspace.memory, workspace.n_contacts)[contacts[i]].closed_gap = 0.0
+    rows = rows_of(instant, workspace)
+    arms = part(instant, rows, ARM)
     for r in range(count, 3 * count):
-        arms[r] = vec(dr.friction, ws.n_contacts)[contacts[r % count]]
+        arms[r] = vec(drive.friction, workspace.n_contacts)[contacts[r % count]]
     if rows > 3 * count:
-        find_turning_rows(ev, ws, loop_at(dr.loop), 3 * count, arms)
-    n, directions, responses = ws.n, mat(ev.directions, rows, ws.n), mat(ev.responses, rows, ws.n)
-    list_columns(rows, n, directions, responses, ev.columns)
-    wholes, reals = blocks_at(ev.block_wholes, ev.block_reals, ev.most, n)
+        find_turning_rows(instant, workspace, loop_at(drive.loop), 3 * count, arms)
+    n, directions, responses = (
+        workspace.n,
+        mat(instant.directions, rows, workspace.n),
+        mat(instant.responses, rows, workspace.n),
+    )
+    list_columns(rows, n, directions, responses, instant.columns)
+    wholes, reals = blocks_at(instant.block_wholes, instant.block_reals, instant.most, n)
     pack_contacts(
-        count, n, rows, directions, responses, imat(ev.columns, rows, n + 1),
-        imat(ev.columns + 8 * rows * (n + 1), rows, n + 1), wholes, reals,
+        count, n, rows, directions, responses, imat(instant.columns, rows, n + 1),
+        imat(instant.columns + 8 * rows * (n + 1), rows, n + 1), wholes, reals,
     )  # fmt: skip
     return SETTLED
 
 
 @internal
-def prepare_rows(ev: Any, ws: Any, h: float) -> None:
+def prepare_rows(instant: Any, workspace: Any, h: float) -> None:
     """Inverse masses and rates, and the impulses to begin with: most likely those of the last step, with the motion
     that they cause in `bounced` (n,)."""
-    count, rows, n, v = whole(ev)[COUNT], rows_of(ev, ws), ws.n, vec(ws.v, ws.n_ext)
-    directions, responses = mat(ev.directions, rows, n), mat(ev.responses, rows, n)
-    contacts, memory, x = ivec(ev.contacts, ev.most), mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ev.bounced, n)
-    inverse, takes, rate, p = part(ev, rows, INVERSE), part(ev, rows, TAKES), part(ev, rows, BEFORE), part(ev, rows, P)
-    scale, contact_rows = vec(ws.row_scale, ws.m_ext), ivec(ws.contact_rows, ws.n_contacts)
-    level, largest = near_level(ws, h), 0.0
+    contact = touching(instant)
+    count, rows, n, v = (
+        scalars(instant).count,
+        rows_of(instant, workspace),
+        workspace.n,
+        vec(workspace.v, workspace.n_ext),
+    )
+    directions, responses = mat(instant.directions, rows, n), mat(instant.responses, rows, n)
+    contacts, memory, x = (
+        ivec(instant.contacts, instant.most),
+        memories_at(workspace.memory, workspace.n_contacts),
+        vec(instant.bounced, n),
+    )
+    inverse, takes, rate, p = (
+        part(instant, rows, INVERSE),
+        part(instant, rows, TAKES),
+        part(instant, rows, BEFORE),
+        part(instant, rows, P),
+    )
+    scale, contact_rows = vec(workspace.row_scale, workspace.m_ext), ivec(workspace.contact_rows, workspace.n_contacts)
+    level, largest = near_level(workspace, h), 0.0
     clear(x, n)
     for r in range(rows):
         i, block = r % count, r // count
         k = contacts[i]
         if block == 0:
-            rate[r] = col(ev, RATE)[i]
+            rate[r] = contact[i].gap_rate
         elif block == 1:
-            rate[r] = col(ev, SLIDE_RATE)[i]
+            rate[r] = contact[i].sliding_rate
         elif block == 2:
-            rate[r] = col(ev, SWAY_RATE)[i]
+            rate[r] = contact[i].sliding_rate2
         else:
-            rate[r] = along(r, n, rows, ev.columns, directions, v)
+            rate[r] = along(r, n, rows, instant.columns, directions, v)
         inverse[r] = p[r] = 0.0
-        if block > 2 or _moves(ev, ws, count, r):
-            inverse[r] = along(r, n, rows, ev.columns, directions, responses[r])
+        if block > 2 or _moves(instant, workspace, count, r):
+            inverse[r] = along(r, n, rows, instant.columns, directions, responses[r])
         # what is near, but does not touch, stands here to be kept from overlapping
-        takes[r] = inverse[r] if col(ev, GAP)[i] <= level * scale[contact_rows[k]] else 0.0
+        takes[r] = inverse[r] if contact[i].gap <= level * scale[contact_rows[k]] else 0.0
         if takes[r] > 0.0:
             largest = max(largest, abs(rate[r]))
-            p[r] = h * memory[k, PUSHED + block]
+            p[r] = h * memory[k].step_force[block]
             for j in range(n):
                 x[j] += p[r] * responses[r, j]
-        part(ev, rows, OFF)[r] = rate[r]
-    real(ev)[LARGEST] = largest
+        part(instant, rows, OFF)[r] = rate[r]
+    scalars(instant).largest_rate = largest
 
 
 @internal
-def _moves(ev: Any, ws: Any, count: int, r: int) -> bool:
+def _moves(instant: Any, workspace: Any, count: int, r: int) -> bool:
     """False for a tangent without friction, or that joints hold."""
-    return bool(masses(ev, count)[r, r] > 0.0)
+    return bool(masses(instant, count)[r, r] > 0.0)

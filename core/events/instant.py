@@ -21,20 +21,21 @@ from ..contact_solvers.directions import (
 )
 from ..contact_solvers.friction_cones import friction_cones_size
 from ..contact_solvers.least_forces import least_forces_size
-from ..contact_solvers.planar_contacts import CALLED, CONES, CONES_SIGNATURE, VECTORS, addresses, solve_cones, work_size
+from ..contact_solvers.planar_contacts import CALLED, CONES, CONES_SIGNATURE, addresses, solve_cones, work_size
+from ..contact_solvers.planar_contacts import VECTORS as VECTORS_OF_CONES
 from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
 from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE
-from .active_set import keep
 from .contact_forces import find_forces
 from .delassus import open_touching
 from .force_contact import settle_forces
+from .friction_rows import keep
 from .impact_law import strike
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
-from .impulse_step import push_apart
+from .moreau_jean_step import push_apart
 from .prepare import use_modes
-from .records import COLUMNS, COUNT, INSTANT, PART_SIGNATURE, REALS, SLIDE_RATE, SWAY_RATE, WHO, WHOLES
+from .records import INSTANT, PART_SIGNATURE, SCALARS, TOUCHING, VECTORS
 from .resting import begin_rest
 from .zeno import step_through
 
@@ -75,7 +76,7 @@ class Instant:
         every = 3 * most
         rows = every + TURNING_ROWS * most
         work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
-        of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS, most)
+        of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS_OF_CONES, most)
         self._cones = BlockRecord(
             CONES,
             {**of_cones, "work": work_size(most)},
@@ -86,7 +87,8 @@ class Instant:
             {
                 **dict.fromkeys(("velocities", "bounced", "noise", "sum", "terms"), n_ext),
                 **dict.fromkeys(("some", "chosen", "order"), every),
-                "contacts": most, "table": COLUMNS * most, "reals": REALS, "wholes": WHOLES,
+                "contacts": most, "table": TOUCHING.itemsize // 8 * most, "scalars": SCALARS.itemsize // 8,
+                **dict.fromkeys(VECTORS, most),
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + 2 * n,
                 "columns": 2 * rows * (n + 1),
@@ -112,22 +114,26 @@ class Instant:
         return self._record.address
 
     @property
+    def _scalars(self) -> NDArray[Any]:
+        return self._record.part("scalars").view(SCALARS)
+
+    @property
     def touching(self) -> list[int]:
         """The contacts that touched at the instant looked at last."""
-        return [int(k) for k in self._record.whole("contacts")[: self._record.whole("wholes")[COUNT]]]
+        return [int(k) for k in self._record.whole("contacts")[: self._scalars["count"][0]]]
 
     @touching.setter
     def touching(self, contacts: list[int]) -> None:
         self._record.whole("contacts")[: len(contacts)] = contacts
-        self._record.whole("wholes")[COUNT] = len(contacts)
+        self._scalars["count"] = len(contacts)
 
     @property
     def inverse_masses(self) -> NDArray[np.float64]:
         """Of the contacts that have been opened last, (2 contacts, 2 contacts), 1/kg: normals first; the tangent of a
         contact in space is that along which it slides, the first one where it does not."""
         count = len(self.touching)
-        table = self._record.part("table").reshape(COLUMNS, self.most)[:, :count]
-        along = np.stack([table[SLIDE_RATE], table[SWAY_RATE]])
+        table = self._record.part("table").view(TOUCHING)[:count]
+        along = np.stack([table["sliding_rate"], table["sliding_rate2"]])
         slides = np.hypot(*along) * [self._assembly.contacts[k].tangents == 2 for k in self.touching]
         along = np.where(slides > 0.0, along / np.where(slides > 0.0, slides, 1.0), [[1.0], [0.0]])
         turn = np.zeros((2 * count, 3 * count))
@@ -144,7 +150,7 @@ class Instant:
     @property
     def who(self) -> int:
         """Of these, the one that a failure is of."""
-        return int(self._record.whole("wholes")[WHO])
+        return int(self._scalars["failed_contact"][0])
 
     def grown(self) -> "Instant":
         """One with more room."""

@@ -7,15 +7,23 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import FORCE_ROUNDING
 from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
-from .records import COUNT, F_N, LOADED, col, whole
+from .records import scalars, touching
 
 
 @internal
-def note_loaded(ev: Any, ws: Any) -> None:
-    """Which touching contacts press, to `LOADED`."""
-    count, contacts, largest = whole(ev)[COUNT], ivec(ev.contacts, ev.most), vec(ws.control, CONTROL_SIZE)[ENERGY_SCALE]
-    level, rows, scale = position_level(ws), ivec(ws.contact_rows, ws.n_contacts), vec(ws.row_scale, ws.m_ext)
-    f_n, loaded = col(ev, F_N), col(ev, LOADED)
+def note_loaded(instant: Any, workspace: Any) -> None:
+    """Which touching contacts press, to `loaded`."""
+    count, contacts, largest = (
+        scalars(instant).count,
+        ivec(instant.contacts, instant.most),
+        vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE],
+    )
+    level, rows, scale = (
+        position_level(workspace),
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        vec(workspace.row_scale, workspace.m_ext),
+    )
+    f_n, loaded = touching(instant).normal_force, vec(instant.loaded, instant.most)
     for i in range(count):
         largest = max(largest, f_n[i] * level * scale[rows[contacts[i]]])
     for i in range(count):
@@ -23,6 +31,6 @@ def note_loaded(ev: Any, ws: Any) -> None:
 
 
 @internal
-def is_loaded(ev: Any, i: int) -> bool:
+def is_loaded(instant: Any, i: int) -> bool:
     """True if touching contact i presses."""
-    return bool(col(ev, LOADED)[i] != 0.0)
+    return bool(vec(instant.loaded, instant.most)[i] != 0.0)

@@ -11,59 +11,66 @@ from typing import Any
 
 from ..assembly.levels import rate_size
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..methods.history import history_time
 from ..rounding import RATE_ROUNDING
-from ..state.modes import APPROACH_SPEED, CLOSED, LARGEST_APPROACH, MEMORY_SIZE, MODE, OPEN
+from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..state.workspace_records import OK
 from .constraint_projection import meet_constraints
-from .laws import MASSLESS
+from .impact_law_codes import MASSLESS
 from .progress import GUARD_SIZE, START
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report
 
 
 @internal
-def settle_massless(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def settle_massless(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Of the pending contacts at massless ends, closed ones whose force became zero open, and open ones that approach
     close."""
     law, pending, rows = (
-        ivec(dr.law, ws.n_contacts),
-        ivec(dr.pending, ws.n_contacts),
-        ivec(ws.contact_rows, ws.n_contacts),
+        ivec(drive.law, workspace.n_contacts),
+        ivec(drive.pending, workspace.n_contacts),
+        ivec(workspace.contact_rows, workspace.n_contacts),
     )
-    memory, rates = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ev.massless_rates, ws.n_contacts)
-    phid, phidd, modes = vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext), vec(ev.modes, ws.n_contacts)
+    memory, rates = (
+        memories_at(workspace.memory, workspace.n_contacts),
+        vec(instant.massless_rates, workspace.n_contacts),
+    )
+    phid, phidd, modes = (
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.phidd, workspace.m_ext),
+        vec(instant.modes, workspace.n_contacts),
+    )
     any_found = False
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if law[k] != MASSLESS or pending[k] == 0:
             continue
         any_found = True
-        rate, rounding = phid[rows[k]], RATE_ROUNDING * rate_size(ws, k)
+        rate, rounding = phid[rows[k]], RATE_ROUNDING * rate_size(workspace, k)
         rates[k] = rate
         closes = rate < -rounding or (rate <= rounding and phidd[rows[k]] < 0.0)
-        memory[k, MODE] = CLOSED if closes and modes[k] != CLOSED else OPEN
+        memory[k].mode = CLOSED if closes and modes[k] != CLOSED else OPEN
     if not any_found:
         return SETTLED
-    status = call_part(ev.use_modes, ev, dr, ws, ms)
+    status = call_part(instant.use_modes, instant, drive, workspace, method)
     if status != SETTLED:
         return status
-    if not meet_constraints(ws):
+    if not meet_constraints(workspace):
         return NOT_MET
-    if call_accelerations(dr.accelerations, ws) != OK:
+    if call_accelerations(drive.accelerations, workspace) != OK:
         return NO_ACCELERATIONS
-    t, started = history_time(ms, 0), history_time(ms, 0) > vec(dr.guard, GUARD_SIZE)[START]
-    for k in range(ws.n_contacts):
+    t, started = history_time(method, 0), history_time(method, 0) > vec(drive.guard, GUARD_SIZE)[START]
+    for k in range(workspace.n_contacts):
         if law[k] != MASSLESS or pending[k] == 0:
             continue
-        if memory[k, MODE] == CLOSED:
+        if memory[k].mode == CLOSED:
             speed = max(-rates[k], 0.0)
-            memory[k, APPROACH_SPEED] = speed
-            memory[k, LARGEST_APPROACH] = max(memory[k, LARGEST_APPROACH], speed)
-            report(dr, t, CLOSE, k, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
+            memory[k].approach_speed = speed
+            memory[k].largest_approach = max(memory[k].largest_approach, speed)
+            report(drive, t, CLOSE, k, 0.0, 0.0, speed, 0.0, 0.0, 0.0)
         elif modes[k] == CLOSED:
-            report(dr, t, OPENS, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0), 0.0, 0.0)
+            report(drive, t, OPENS, k, 0.0, 0.0, 0.0, max(phid[rows[k]], 0.0), 0.0, 0.0)
         elif started:
-            report(dr, t, GRAZE, k, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            report(drive, t, GRAZE, k, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return SETTLED

@@ -5,10 +5,10 @@ What it does is `tables/partition.prepare`; the elimination is that of `linalg/r
 
 from typing import Any
 
-from ..assembly.compatibility import analyze_equations
 from ..assembly.condition_probe import set_probe
 from ..assembly.evaluate import evaluate_tangent
 from ..assembly.partition_building import partition_wanted
+from ..assembly.redundant_reactions import analyze_equations
 from ..assembly.structure_switch import engage_modes
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
@@ -32,65 +32,66 @@ from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANT_
 
 
 @internal
-def use_modes(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def use_modes(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Take the structure of the present modes, with a partition and pivots for the current point."""
-    if engage_modes(ws) != OK:
+    if engage_modes(workspace) != OK:
         return WANT_MEMORY
-    evaluate_tangent(ws, 0.0, 0.0)
-    status = _choose_partition(ev, ws)
+    evaluate_tangent(workspace, 0.0, 0.0)
+    status = _choose_partition(instant, workspace)
     if status != SETTLED:
         return status
-    counters, rate = ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE)
+    counters, rate = ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE)
     counters[PARTITIONS] += 1
     counters[ANALYSES] += 1
-    code = analyze_equations(ws, ws.kkt)
-    if code == OK and ws.m_act > 0:
-        code = call_analyze(ws.analyze, lu_at(ws.lu_d), ws.values)
-    if code == OK and 0 < ws.m_held < ws.m_act:
-        code = call_analyze(ws.analyze, lu_at(ws.lu_p), ws.values)
+    code = analyze_equations(workspace, workspace.kkt)
+    if code == OK and workspace.m_act > 0:
+        code = call_analyze(workspace.analyze, lu_at(workspace.lu_d), workspace.values)
+    if code == OK and 0 < workspace.m_held < workspace.m_act:
+        code = call_analyze(workspace.analyze, lu_at(workspace.lu_p), workspace.values)
     if code != OK:
         return WANT_MEMORY if code == NO_MEMORY else SINGULAR_MATRIX
-    if follow(lu_at(ws.kkt_query), lu_at(ws.kkt)) != OK:
+    if follow(lu_at(workspace.kkt_query), lu_at(workspace.kkt)) != OK:
         return WANT_MEMORY
-    set_probe(ws)
+    set_probe(workspace)
     rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
     return SETTLED
 
 
 @internal
-def _choose_partition(ev: Any, ws: Any) -> int:
-    rank = rank_of(ev, ws, RANK_TOLERANCE)
+def _choose_partition(instant: Any, workspace: Any) -> int:
+    rank = rank_of(instant, workspace, RANK_TOLERANCE)
     if rank < 0:
         return WANT_ROOM
-    if rank < ws.m_act:
+    if rank < workspace.m_act:
         return REPEATED_ROWS
-    partition_wanted(ws)
+    partition_wanted(workspace)
     return SETTLED
 
 
 @internal
-def rank_of(ev: Any, ws: Any, tolerance: float) -> int:
+def rank_of(instant: Any, workspace: Any, tolerance: float) -> int:
     """Rank of Phi_q as last evaluated, of whose rows less than `tolerance` is left when they repeat others; the
     coordinates that depend to `wanted_dependent`. -1 where there is too little room."""
-    st, m, n, space = structure_at(ws.structure), ws.m_act, ws.n, ev.rows_space
-    size, wholes, reals = n + m + 1, ev.row_wholes, ev.row_reals
-    values, slots = vec(ws.values, ws.n_values), ivec(st.jacobian_slot, st.n_jacobian)
-    owner, mark, wanted = ivec(wholes, n), ivec(wholes + 8 * size, n), ivec(ws.wanted_dependent, m)
+    structure, m, n, space = structure_at(workspace.structure), workspace.m_act, workspace.n, instant.rows_space
+    size, wholes, reals = n + m + 1, instant.row_wholes, instant.row_reals
+    values, slots = vec(workspace.values, workspace.n_values), ivec(structure.jacobian_slot, structure.n_jacobian)
+    owner, mark, wanted = ivec(wholes, n), ivec(wholes + 8 * size, n), ivec(workspace.wanted_dependent, m)
     column, pending = ivec(wholes + 16 * size, n), ivec(wholes + 24 * size, n)
     starts, f_starts = ivec(wholes + 32 * size, m + 1), ivec(wholes + 40 * size, m + 1)
-    data, x = vec(reals, st.n_jacobian), vec(reals + 8 * space, n)
+    data, x = vec(reals, structure.n_jacobian), vec(reals + 8 * space, n)
     for i in range(n):
         owner[i] = mark[i] = -1
         x[i] = 0.0
     for i in range(m):
         wanted[i] = -1
     starts[0] = f_starts[0] = 0
-    if st.n_jacobian > space:
+    if structure.n_jacobian > space:
         return -1
-    for e in range(st.n_jacobian):
+    for e in range(structure.n_jacobian):
         data[e] = values[slots[e]]
     return int(eliminate(
-        m, n, ivec(st.jacobian_start, m + 1), ivec(st.jacobian_col, st.n_jacobian), data, vec(ws.scale, n),
+        m, n, ivec(structure.jacobian_start, m + 1), ivec(structure.jacobian_col, structure.n_jacobian), data,
+        vec(workspace.scale, n),
         tolerance, wanted, owner, mark, column, pending, x,
         starts, ivec(wholes + 48 * size, space), vec(reals + 8 * (space + size), space),
         f_starts, ivec(wholes + 48 * size + 8 * space, space), vec(reals + 8 * (2 * space + size), space),

@@ -11,75 +11,73 @@ from ..contact_solvers.least_forces import take_least_forces
 from ..contact_solvers.planar_contacts import MANY
 from ..contact_solvers.projections import motion_left, motion_of
 from ..rounding import FRICTION_GOOD, STICKS_STILL
-from .forces import cones_at
+from .independent_directions import cones_at
 from .pivot_in_plane import has_one_tangent, pivot_in_plane
-from .records import (
-    COMPANION,
-    COS_WAY,
-    COUNT,
-    FIRMNESS,
-    LEFT_OVER,
-    RATE,
-    SIN_WAY,
-    SLIDE_RATE,
-    SWAY_RATE,
-    TURNS,
-    UNSHARED,
-    col,
-    whole,
-)
+from .records import scalars, touching
 
 
 @internal
-def masses(ev: Any, count: int) -> Any:
+def masses(instant: Any, count: int) -> Any:
     """Inverse effective masses (3 count, 3 count): normals, first and second tangents, 1/kg."""
-    return mat(ev.space_a, 3 * count, 3 * count)
+    return mat(instant.space_a, 3 * count, 3 * count)
 
 
 @internal
-def pressing(ev: Any, count: int) -> Any:
+def pressing(instant: Any, count: int) -> Any:
     """The same for forces that last: normal forces come with their torques against rolling and spinning."""
-    return mat(ev.pressing_a if whole(ev)[TURNS] != 0 else ev.space_a, 3 * count, 3 * count)
+    return mat(instant.pressing_a if scalars(instant).contact_torques != 0 else instant.space_a, 3 * count, 3 * count)
 
 
 @internal
-def read_level(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any, of_sway: Any) -> None:
+def read_level(instant: Any, workspace: Any, level: Any, of_gap: Any, of_slide: Any, of_sway: Any) -> None:
     """Normals' and tangents' rows of a level of the touching contacts; zeros along tangents without friction."""
-    contacts = ivec(ev.contacts, ev.most)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    static = vec(ws.contact_sticking, ws.n_contacts)
-    for i in range(whole(ev)[COUNT]):
+    contacts = ivec(instant.contacts, instant.most)
+    rows, slides = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        ivec(workspace.contact_slide_rows, workspace.n_contacts),
+    )
+    static = vec(workspace.contact_sticking, workspace.n_contacts)
+    for i in range(scalars(instant).count):
         k = contacts[i]
         rubs = slides[k] >= 0 and static[k] > 0.0
         of_gap[i] = level[rows[k]]
         of_slide[i] = level[slides[k]] if rubs else 0.0
-        of_sway[i] = level[slides[k] + 1] if rubs and in_space(ws, k) else 0.0
+        of_sway[i] = level[slides[k] + 1] if rubs and in_space(workspace, k) else 0.0
 
 
 @internal
-def read_all_rates(ev: Any, ws: Any) -> None:
+def read_all_rates(instant: Any, workspace: Any) -> None:
     """Rates of gaps and of sliding, as the residuals have been evaluated last."""
-    read_level(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
+    contact = touching(instant)
+    read_level(
+        instant,
+        workspace,
+        vec(workspace.phid, workspace.m_ext),
+        contact.gap_rate,
+        contact.sliding_rate,
+        contact.sliding_rate2,
+    )
 
 
 @internal
-def push(ev: Any, ws: Any, p: Any) -> None:
+def push(instant: Any, workspace: Any, p: Any) -> None:
     """Add the velocities that impulses p (3 count,) cause; rates follow."""
-    count, v = whole(ev)[COUNT], vec(ws.v, ws.n_ext)
-    responses, a = mat(ev.responses, 3 * count, ws.n), masses(ev, count)
+    contact = touching(instant)
+    count, v = scalars(instant).count, vec(workspace.v, workspace.n_ext)
+    responses, a = mat(instant.responses, 3 * count, workspace.n), masses(instant, count)
     for i in range(3 * count):
         if p[i] == 0.0:
             continue
-        for j in range(ws.n):
+        for j in range(workspace.n):
             v[j] += p[i] * responses[i, j]
         for j in range(count):
-            col(ev, RATE)[j] += p[i] * a[j, i]
-            col(ev, SLIDE_RATE)[j] += p[i] * a[count + j, i]
-            col(ev, SWAY_RATE)[j] += p[i] * a[2 * count + j, i]
+            contact[j].gap_rate += p[i] * a[j, i]
+            contact[j].sliding_rate += p[i] * a[count + j, i]
+            contact[j].sliding_rate2 += p[i] * a[2 * count + j, i]
 
 
 @internal
-def _repeat(ev: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> bool:
+def _repeat(instant: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> bool:
     """True if rows of the contacts that press repeat each other, normals and tangents of those that stick, so that
     their forces p are not unique."""
     fastest, rows = 0.0, ivec(work, 3 * n)
@@ -94,14 +92,14 @@ def _repeat(ev: Any, n: int, a: Any, b: Any, known: Any, p: Any, work: int) -> b
                 rows[count] = row
                 count += 1
     kept, room = ivec(work + 24 * n, 3 * n), vec(work + 48 * n, count * (count + 2))
-    return int(call_farthest(ev.farthest, a, rows[:count], kept, room)) < count
+    return int(call_farthest(instant.farthest, a, rows[:count], kept, room)) < count
 
 
 @internal
-def _connected(ev: Any, a: Any, count: int, left: Any) -> int:
+def _connected(instant: Any, a: Any, count: int, left: Any) -> int:
     """The first contact that is `left`, and those that it moves, one by one, go to `some`; they are no more left. How
     many there are."""
-    some, n = ivec(ev.some, 3 * ev.most), 0
+    some, n = ivec(instant.some, 3 * instant.most), 0
     for i in range(count):
         if left[i] != 0.0:
             some[0], left[i], n = i, 0.0, 1
@@ -111,7 +109,7 @@ def _connected(ev: Any, a: Any, count: int, left: Any) -> int:
         p = some[at]
         for i in range(count):
             if left[i] != 0.0:
-                together = i != p and i == p + int(col(ev, COMPANION)[p])
+                together = i != p and i == p + int(touching(instant)[p].companion)
                 for row in range(9):
                     if together or a[(row // 3) * count + p, (row % 3) * count + i] != 0.0:
                         some[n], left[i] = i, 0.0
@@ -129,38 +127,41 @@ def _connected(ev: Any, a: Any, count: int, left: Any) -> int:
 
 
 @internal
-def solve_cone_problem(ev: Any, a: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
+def solve_cone_problem(
+    instant: Any, a: Any, count: int, part: Any, b: Any, mu: Any, base: Any, known: Any, p: Any
+) -> bool:
     """Forces p (3 count,) of the contacts `part` from inverse masses a and the motion b (3 count,); the others get
     none. Contacts that do not move each other are problems of their own."""
-    left = col(ev, LEFT_OVER)
+    left = vec(instant.unsolved, instant.most)
     for i in range(count):
         left[i] = part[i]
     for i in range(3 * count):
         p[i] = 0.0
     while True:
-        n = _connected(ev, a, count, left)
+        n = _connected(instant, a, count, left)
         if n == 0:
             return True
-        if not _solve_connected(ev, a, count, n, b, mu, base, known, p):
+        if not _solve_connected(instant, a, count, n, b, mu, base, known, p):
             return False
 
 
 @internal
-def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
+def _solve_connected(instant: Any, a: Any, count: int, n: int, b: Any, mu: Any, base: Any, known: Any, p: Any) -> bool:
     """`solve_cone_problem` of the first n contacts in `some`. With the compliances C of the contacts, the same for
     normal and tangents of each, it is the problem of equally compliant ones for C^1/2 P, C^-1/2 A C^-1/2 and C^-1/2 b:
     friction cones stay what they are."""
-    some, firmness = ivec(ev.some, 3 * ev.most), col(ev, FIRMNESS)
+    contact = touching(instant)
+    some, firmness = ivec(instant.some, 3 * instant.most), contact.firmness
     # room: matrix, motion, coefficients, forces, directions
-    own = mat(ev.space_room, 3 * n, 3 * n)
-    room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
+    own = mat(instant.space_room, 3 * n, 3 * n)
+    room = vec(instant.space_room + 8 * 9 * n * n, 12 * n)
     own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
     own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
-    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 3, n)
+    way = mat(instant.space_room + 8 * (9 * n * n + 9 * n), 3, n)
     for i in range(n):
         p_i, firm = some[i], firmness[some[i]]
         own_mu[i], own_base[i], own_known[i] = mu[p_i], base[p_i] / firm, known[p_i]
-        way[0, i], way[1, i], step = col(ev, COS_WAY)[p_i], col(ev, SIN_WAY)[p_i], int(col(ev, COMPANION)[p_i])
+        way[0, i], way[1, i], step = contact[p_i].direction_cos, contact[p_i].direction_sin, int(contact[p_i].companion)
         way[2, i] = step if 0 <= i + step < n and some[i + step] == p_i + step else 0.0
         for block in range(3):
             own_b[block * n + i] = firm * b[block * count + p_i]
@@ -168,7 +169,7 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
                 both = firm * firmness[some[j]]
                 for other in range(3):
                     own[block * n + i, other * n + j] = both * a[block * count + p_i, other * count + some[j]]
-    if not _recalled(ev, n) and not _solve_in_room(ev, n, some[0]):
+    if not _recalled(instant, n) and not _solve_in_room(instant, n, some[0]):
         return False
     for i in range(n):
         p_i = some[i]
@@ -180,11 +181,11 @@ def _solve_connected(ev: Any, a: Any, count: int, n: int, b: Any, mu: Any, base:
 
 
 @internal
-def _recalled(ev: Any, n: int) -> bool:
+def _recalled(instant: Any, n: int) -> bool:
     """True if the problem of n contacts in the room is the last one that was solved: then its forces are in the room
     too. An instant that wants memory is decided again from its beginning."""
     size = 9 * n * n + 12 * n
-    room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
+    room, kept = vec(instant.space_room, size), vec(instant.space_kept, size + 2)
     first, behind = 9 * n * n + 3 * n, 9 * n * n + 6 * n
     if kept[0] != n:
         return False
@@ -194,28 +195,28 @@ def _recalled(ev: Any, n: int) -> bool:
     for i in range(first, behind):
         room[i] = kept[2 + i]
     if kept[1] != 0.0:
-        whole(ev)[UNSHARED] = int(kept[1])
+        scalars(instant).unshared_contact = int(kept[1])
     return True
 
 
 @internal
-def _keep_solved(ev: Any, n: int, unshared: int) -> None:
+def _keep_solved(instant: Any, n: int, unshared: int) -> None:
     size = 9 * n * n + 12 * n
-    room, kept = vec(ev.space_room, size), vec(ev.space_kept, size + 2)
+    room, kept = vec(instant.space_room, size), vec(instant.space_kept, size + 2)
     kept[0], kept[1] = n, unshared
     for i in range(size):
         kept[2 + i] = room[i]
 
 
 @internal
-def _solve_in_room(ev: Any, n: int, who: int) -> bool:
+def _solve_in_room(instant: Any, n: int, who: int) -> bool:
     """Forces of the problem of n contacts in the room, of which `who` is one."""
-    own = mat(ev.space_room, 3 * n, 3 * n)
-    room = vec(ev.space_room + 8 * 9 * n * n, 12 * n)
+    own = mat(instant.space_room, 3 * n, 3 * n)
+    room = vec(instant.space_room + 8 * 9 * n * n, 12 * n)
     own_b, own_p, own_mu = room[: 3 * n], room[3 * n : 6 * n], room[6 * n : 7 * n]
     own_base, own_known = room[7 * n : 8 * n], room[8 * n : 9 * n]
-    way = mat(ev.space_room + 8 * (9 * n * n + 9 * n), 3, n)
-    work, least_norm = ev.space_room + 8 * (9 * n * n + 12 * n), cones_at(ev.cones).least_norm
+    way = mat(instant.space_room + 8 * (9 * n * n + 9 * n), 3, n)
+    work, least_norm = instant.space_room + 8 * (9 * n * n + 12 * n), cones_at(instant.cones).least_norm
     found, plane, unshared = False, n > 1 and has_one_tangent(n, own), 0
     for i in range(n):
         plane = plane and way[2, i] == 0.0
@@ -224,7 +225,7 @@ def _solve_in_room(ev: Any, n: int, who: int) -> bool:
         if found or (attempt < 2 and not plane) or (attempt == 0 and n > MANY):
             continue
         if attempt == 1:
-            found = pivot_in_plane(ev, n, own, own_b, own_mu, own_base, own_known, way, own_p)
+            found = pivot_in_plane(instant, n, own, own_b, own_mu, own_base, own_known, way, own_p)
             found = found and motion_left(n, own, own_b, own_mu, own_base, own_known, way, own_p) <= FRICTION_GOOD
         else:
             most = SWEEPS if attempt == 0 else MOST_SWEEPS
@@ -233,10 +234,10 @@ def _solve_in_room(ev: Any, n: int, who: int) -> bool:
             ) == FOUND  # fmt: skip
     if not found:
         return False
-    if n > 1 and _repeat(ev, n, own, own_b, own_known, own_p, work):
+    if n > 1 and _repeat(instant, n, own, own_b, own_known, own_p, work):
         shared = take_least_forces(least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work)
         if not shared:
-            whole(ev)[UNSHARED] = unshared = 1 + ivec(ev.contacts, ev.most)[who]
+            scalars(instant).unshared_contact = unshared = 1 + ivec(instant.contacts, instant.most)[who]
     if n > 1:
-        _keep_solved(ev, n, unshared)
+        _keep_solved(instant, n, unshared)
     return True

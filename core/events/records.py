@@ -8,11 +8,98 @@ from typing import Any
 import numpy as np
 
 from ..compiled import types
-from ..compiled.jit import caller, internal, record_view
-from ..compiled.views import ivec, mat, vec
+from ..compiled.jit import caller, internal, record_view, records_view
+from ..compiled.views import mat
 from ..state.method_records import METHOD_TYPE
 from ..state.run_records import DRIVE_TYPE
 from ..state.workspace_records import WORKSPACE_TYPE
+
+_PER_CONTACT = (
+    # before the instant
+    "mode_before", "slide_mode_before", "ratio_before",
+    # its event: its force is zero; it reaches its limit, in this direction; it stops
+    "opens", "slips", "stops",
+    "gap", "sliding_distance",           # m
+    "closing_acceleration",              # with which its gap closes before any impact, m/s^2
+    "gradient_size",                     # of its gap
+    "rate_rounding",                     # rates below it are none, m/s
+    "least_sliding_speed",               # sliding below it counts as none, m/s
+    "restitution", "kinetic_friction", "static_friction",  # coefficients
+    # rates of gap, sliding distance and, in space, along the second tangent, m/s; r w_n on a patch, m/s
+    "gap_rate", "sliding_rate", "sliding_rate2", "spin_rate",
+    # the same before the present problem of an impact
+    "gap_rate_before", "sliding_rate_before", "sliding_rate2_before", "spin_rate_before",
+    "spin_share",                        # part of the torque against spin at rest
+    # accelerations without contact forces, and with them, m/s^2
+    "free_gap_acceleration", "free_sliding_acceleration", "free_sliding_acceleration2",
+    "gap_acceleration", "sliding_acceleration", "sliding_acceleration2",
+    "normal_force", "friction_force", "friction_force2",  # N
+    # of the present problem of an impact, N s; M/r against spin of the present round, and of all rounds
+    "normal_impulse", "friction_impulse", "friction_impulse2", "problem_spin_impulse", "spin_impulse",
+    # results of the impact: N s, N s, J, m/s, m/s
+    "impact_impulse", "impact_friction", "impact_loss", "approach_speed", "separation_speed",
+    # and of the impact with all restitution
+    "first_impulse", "first_friction", "first_loss", "first_approach", "first_separation",
+    "comes_to_rest",                     # 1: this impact's restitution has been left out
+    "negligible_bounce",                 # 1: it has bounced by next to nothing
+    "stopping_impulse", "stopping_loss",  # N s and J of what stopped without a collision
+    "stopping_loss_before",              # J: before the last that stopped
+    "direction_cos", "direction_sin",    # direction of sliding, from the first tangent
+    "tangent_axis",                      # that angles are counted from (`contacts/frame3d.py`)
+    "tangent_priority",                  # the higher, the earlier its tangent is kept where some repeat others
+    "new_slide_mode", "new_ratio",       # what was chosen
+    "firmness",                          # one over the root of its relative compliance
+    "companion",                         # how far on the contact stands that shares its friction (`three_tangents.py`)
+    "new_implied",                       # which of its rows others imply: IMPLIED of `state/modes.py`
+)  # fmt: skip
+TOUCHING = np.dtype([(name, np.float64) for name in _PER_CONTACT])
+"""What is known of one touching contact."""
+
+VECTORS = (
+    "part", "pressing",                  # 1: takes part in the problem; and presses, as far as is known
+    "mu", "base",                        # friction coefficient and earlier normal impulse of the friction limit
+    "known_direction", "undirected",     # 1: slides in a known direction; zeros
+    "slides",                            # 1: slides, `contact_forces.BEGINS`: begins to
+    "at_rest", "loaded", "closes",       # 1: gap and rate are zero; presses; is closed from now on
+    "included", "can_slide", "turns",    # 1: has rows of its own; could slide at its limit; its force has a torque
+    "unsolved",                          # 1: of a part of the mechanism whose problem is still to be solved
+    "pressed", "slow",                   # 1: has an impulse; hardly slides (`velocity_level_modes.py`)
+    "jerks",                             # rates of the gaps' accelerations, m/s^3
+)  # fmt: skip
+"""Arrays (most,) float64 of INSTANT that solvers take: one number of each touching contact."""
+
+SCALARS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "count",                     # contacts that touch
+            "struck",                    # 1: there has been an impact
+            "failed_contact",            # that a failure is of; -1: none
+            "accelerations_known",       # 1: accelerations without contact forces have been found
+            "without_restitution",       # 1: impacts are without restitution where `negligible_bounce` says so
+            "contact_torques",           # 1: forces of contacts have torques against turning with them
+            "touched", "touched_in_space",  # contacts that touch, once the instant has been decided
+            "diagonal_only",             # 1: of the inverse masses of what is opened the diagonal alone is wanted
+            "in_rounds",                 # 1: contacts were struck one round after another (`impact_retries.py`)
+            "unshared_contact",          # number, from 1 on, of one whose load was not shared (`rates.py`); 0: none
+            "approaching_contact",       # the same where an approach has been left (`residual_approach.py`)
+        )
+    ]
+    + [
+        (name, np.float64)
+        for name in (
+            "no_acceleration",           # accelerations below it are none, m/s^2
+            "approach_left",             # by the impact, in units of `rate_rounding`
+            "constraint_residual",       # change of the joints' rates by the impact, m/s
+            "acceleration_scale",        # largest acceleration before, m/s^2; 0 after an impact
+            "rank_tolerance",            # part of a direction's inverse mass that others must leave of it
+            "sweeps",                    # of the last step of impulses
+            "projection_loss",           # energy that bringing the motion onto new constraints took, J: in no account
+            "largest_rate",              # of a row before its impulse, m/s
+        )
+    ]
+)  # fmt: skip
+"""What is known of the instant as a whole."""
 
 INSTANT = np.dtype(
     [
@@ -25,8 +112,8 @@ INSTANT = np.dtype(
             # record of `contact_solvers/planar_contacts.py`; addresses of functions
             "cones", "solve_cones", "independent", "farthest",
             "contacts",                  # (most,) int64: which touch
-            "table",                     # (COLUMNS, most) float64: of each of them
-            "reals", "wholes",           # (REALS,) float64, (WHOLES,) int64
+            "table", "scalars",          # (most,) TOUCHING, (1,) SCALARS
+            *VECTORS,
             "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
             # (2 most, n) float64, in space (6 most, n): gradients, and the motions that unit impulses cause
             "directions", "responses",
@@ -47,7 +134,7 @@ INSTANT = np.dtype(
             # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
             "space_kept",                # the last problem that was solved, and its forces (`rates.py`)
-            "sweeps", "columns",         # room for `impulse_step.py`: float64 and int64
+            "sweeps", "columns",         # room for `moreau_jean_step.py`: float64 and int64
             "block_wholes", "block_reals",  # and for `contact_solvers/contact_blocks.py`
         )
     ]
@@ -55,65 +142,10 @@ INSTANT = np.dtype(
 INSTANT_TYPE = types.from_dtype(INSTANT)
 PART_SIGNATURE = types.int64(INSTANT_TYPE, DRIVE_TYPE, WORKSPACE_TYPE, METHOD_TYPE)
 call_part = caller(PART_SIGNATURE)
-"""call_part(address, ev, dr, ws, ms): the larger parts are called by address, so that each is compiled once and not
-again inside each caller."""
+"""call_part(address, instant, drive, workspace, method): the larger parts are called by address, so that each is
+compiled once and not again inside each caller."""
 instant_at = record_view(INSTANT_TYPE)
-
-# rows of `table`, each (most,)
-(
-    WAS, SLID, OLD_RATIO,              # mode, SLIDE and RATIO before
-    LEAVES, SLIPS, STOPS,              # its event: its force is zero; it reaches its limit, in this direction; it stops
-    FALLS,                             # acceleration with which its gap closes before any impact, m/s^2
-    GAP, SLIDE_VALUE,                  # m
-    ROUNDING,                          # rates below it are none, m/s
-    RESTITUTION, KINETIC, STATIC,      # coefficients
-    RATE, SLIDE_RATE,                  # of gap and sliding distance, m/s
-    KNOWN, AT_REST, TAKES, DIRECTION,
-    B_N, B_T, SIZE,                    # accelerations without contact forces, m/s^2; size of the gap's gradient
-    F_N, F_T, W_N, W_T,                # forces and the accelerations with them
-    CLOSES, NEW_SLIDE, NEW_RATIO,      # what was chosen
-    IMPULSE, FRICTION, LOSS, APPROACH, SEPARATION,  # of the impact
-    P_N, P_T, PART, MU, BASE, RESTS, LOW,
-    FIRST_IMPULSE, FIRST_FRICTION, FIRST_LOSS, FIRST_APPROACH, FIRST_SEPARATION,  # of the impact with all restitution
-    RATE_BEFORE, SLIDE_BEFORE,
-    FLAG, OTHER_FLAG, SPARE, LOADED,
-    SLOW,                              # sliding below it counts as none, m/s
-    STOP_IMPULSE, STOP_LOSS,           # N s and J of what stopped without a collision
-    FIRST,                             # the higher, the earlier its tangent is kept where some repeat others
-    # in space, along the second tangent: rate, free acceleration, force and acceleration with it, impulse, rate before
-    SWAY_RATE, B_S, F_S, W_S, P_S, SWAY_BEFORE,
-    COS_WAY, SIN_WAY,                  # direction of sliding, from the first tangent
-    AXIS_NOW,                          # that angles are counted from (`contacts/frame3d.py`)
-    LOST_BEFORE,                       # J: of STOP_LOSS, before the last that stopped
-    SPIN, HELD_SPIN,                   # r w_n on a patch, m/s; part of the torque against it at rest
-    ZETA, P_SPIN, SPIN_BEFORE,         # impulse M/r against it, N s: of one problem, of a blow; the spin before, m/s
-    NEW_IMPLIED,                       # which of its rows others imply: IMPLIED of `state/modes.py`
-    LEFT_OVER,                         # 1: of a part of the mechanism whose problem is still to be solved
-    FIRMNESS,                          # one over the root of its relative compliance
-    COMPANION,                         # how far on the contact stands that shares its friction (`three_tangents.py`)
-) = range(75)  # fmt: skip
-COLUMNS = 75
-
-# entries of `reals`
-NONE, LEFT, RESIDUAL, ACCELERATIONS, RANK = range(5)
-SWEPT = 5  # sweeps of the last step of impulses
-MET_LOSS = 6  # energy that bringing the motion onto new constraints has taken, J: in no account
-LARGEST = 7  # rate of a row before its impulse, m/s
-REALS = 8
-# entries of `wholes`
-COUNT = 0  # contacts that touch
-STRUCK = 1
-WHO = 2  # the contact that a failure is of
-READY = 3  # accelerations have been looked at
-WITHOUT = 4  # 1: impacts are without restitution where `LOW` says so
-TURNS = 5  # 1: forces of contacts have torques against turning with them
-TOUCHED = 6  # contacts that touch, once the instant has been decided
-ALONE = 7  # 1: of the inverse masses of what is opened the diagonal alone is wanted
-TOUCHED_IN_SPACE = 8  # of TOUCHED, those with two tangents
-IN_ROUNDS = 9  # 1: the impact's contacts were struck one round after another (`impact_rounds.py`)
-UNSHARED = 10  # number, from 1 on, of a contact whose load has not been shared (`rates.py`); 0: none
-STILL_APPROACHES = 11  # the same where an approach has been left (`residual_approach.py`)
-WHOLES = 12
+_touching_at, _scalars_at = records_view(types.from_dtype(TOUCHING)), record_view(types.from_dtype(SCALARS))
 
 # what settling an instant returns
 SETTLED = 0
@@ -135,27 +167,21 @@ NO_FREE_ACCELERATIONS = 21
 
 
 @internal
-def col(ev: Any, k: int) -> Any:
-    """Row k of the table."""
-    return vec(ev.table + 8 * k * ev.most, ev.most)
+def touching(instant: Any) -> Any:
+    """The touching contacts, (most,) TOUCHING."""
+    return _touching_at(instant.table, instant.most)
 
 
 @internal
-def whole(ev: Any) -> Any:
-    """The integers."""
-    return ivec(ev.wholes, WHOLES)
+def scalars(instant: Any) -> Any:
+    """SCALARS of the instant."""
+    return _scalars_at(instant.scalars)
 
 
 @internal
-def real(ev: Any) -> Any:
-    """The numbers."""
-    return vec(ev.reals, REALS)
-
-
-@internal
-def delassus(ev: Any, count: int) -> Any:
+def delassus(instant: Any, count: int) -> Any:
     """Inverse effective masses (2 count, 2 count): normals first."""
-    return mat(ev.a, 2 * count, 2 * count)
+    return mat(instant.a, 2 * count, 2 * count)
 
 
 @internal

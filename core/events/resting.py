@@ -14,42 +14,12 @@ from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..rounding import NO_ACCELERATION, PERHAPS_REST
-from ..state.modes import CLOSED, IMPLIED, MEMORY_SIZE, OF_NORMAL
-from ..state.modes import SLOW as SLOW_SLIDING
+from ..state.modes import CLOSED, OF_NORMAL, memories_at
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
 from .rates import read_all_rates, read_level
 from .reading import largest_acceleration, unresolved_speed
-from .records import (
-    ACCELERATIONS,
-    AT_REST,
-    B_N,
-    B_S,
-    B_T,
-    COS_WAY,
-    COUNT,
-    KNOWN,
-    NO_FREE_ACCELERATIONS,
-    NONE,
-    RATE,
-    READY,
-    ROUNDING,
-    SETTLED,
-    SIN_WAY,
-    SIZE,
-    SLID,
-    SLIDE_RATE,
-    SLOW,
-    SPIN,
-    STATIC,
-    STOPS,
-    STRUCK,
-    SWAY_RATE,
-    WAS,
-    col,
-    real,
-    whole,
-)
+from .records import NO_FREE_ACCELERATIONS, SETTLED, scalars, touching
 from .spins import brake_by_spins, read_spins
 from .three_tangents import size_of
 from .touching import force_noise
@@ -59,78 +29,107 @@ ENDS_WITH = 2.0
 
 
 @internal
-def _look(ev: Any, dr: Any, ws: Any) -> None:
-    """Which contacts slide or spin, and where to: 1 in KNOWN, with COS_WAY and SIN_WAY; 0 where friction decides."""
-    read_spins(ev, dr, ws)
-    contacts, stopped = ivec(ev.contacts, ev.most), 0.0
-    for i in range(whole(ev)[COUNT]):
-        x, y, none = col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i], max(col(ev, SLOW)[i], col(ev, ROUNDING)[i])
-        speed, z = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE)), col(ev, SPIN)[i]
-        stood = z != 0.0 and col(ev, WAS)[i] == CLOSED and abs(col(ev, SLID)[i]) != 1.0
-        if (stood or col(ev, STOPS)[i] != 0.0) and whole(ev)[STRUCK] == 0:
+def _look(instant: Any, drive: Any, workspace: Any) -> None:
+    """Which contacts slide or spin, and where to: 1 in `known_direction`; 0 where friction
+    decides."""
+    contact = touching(instant)
+    read_spins(instant, drive, workspace)
+    contacts, stopped = ivec(instant.contacts, instant.most), 0.0
+    for i in range(scalars(instant).count):
+        x, y, none = (
+            contact[i].sliding_rate,
+            contact[i].sliding_rate2,
+            max(contact[i].least_sliding_speed, contact[i].rate_rounding),
+        )
+        speed, z = size_of(instant, i, contact.sliding_rate, contact.sliding_rate2), contact[i].spin_rate
+        stood = z != 0.0 and contact[i].mode_before == CLOSED and abs(contact[i].slide_mode_before) != 1.0
+        if (stood or contact[i].stops != 0.0) and scalars(instant).struck == 0:
             # it has gone on in its direction to where error control does not resolve another; or it creeps
-            none = max(none, ENDS_WITH * mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[contacts[i], SLOW_SLIDING])
-            if not in_space(ws, contacts[i]) and col(ev, SLID)[i] * x >= -none:
+            none = max(none, ENDS_WITH * memories_at(workspace.memory, workspace.n_contacts)[contacts[i]].slow_sliding)
+            if not in_space(workspace, contacts[i]) and contact[i].slide_mode_before * x >= -none:
                 # its sliding velocity has come to zero, as finely as the time of that is known
                 none = max(none, speed)
-        slides = math.sqrt(speed * speed + z * z) > none and col(ev, STATIC)[i] > 0.0
-        col(ev, KNOWN)[i] = 1.0 if slides else 0.0
-        col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = (x / speed, y / speed) if slides and speed > 0.0 else (1.0, 0.0)
-        if col(ev, STOPS)[i] != 0.0 and not slides:
+        slides = math.sqrt(speed * speed + z * z) > none and contact[i].static_friction > 0.0
+        vec(instant.known_direction, instant.most)[i] = 1.0 if slides else 0.0
+        contact[i].direction_cos, contact[i].direction_sin = (
+            (x / speed, y / speed) if slides and speed > 0.0 else (1.0, 0.0)
+        )
+        if contact[i].stops != 0.0 and not slides:
             stopped = max(stopped, speed)
     # what moves no faster than a contact that stops has stopped with it, as finely as the time of that is known
-    for i in range(whole(ev)[COUNT] if whole(ev)[STRUCK] == 0 else 0):
-        speed = size_of(ev, i, col(ev, SLIDE_RATE), col(ev, SWAY_RATE))
-        if col(ev, SPIN)[i] == 0.0 and speed <= ENDS_WITH * stopped:
-            col(ev, KNOWN)[i], col(ev, COS_WAY)[i], col(ev, SIN_WAY)[i] = 0.0, 1.0, 0.0
-    brake_by_spins(ev, dr, ws)
+    for i in range(scalars(instant).count if scalars(instant).struck == 0 else 0):
+        speed = size_of(instant, i, contact.sliding_rate, contact.sliding_rate2)
+        if contact[i].spin_rate == 0.0 and speed <= ENDS_WITH * stopped:
+            vec(instant.known_direction, instant.most)[i], contact[i].direction_cos, contact[i].direction_sin = (
+                0.0,
+                1.0,
+                0.0,
+            )
+    brake_by_spins(instant, drive, workspace)
 
 
 @internal
-def begin_rest(ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def begin_rest(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Which contacts neither separate nor approach. `ACCELERATIONS` of the coordinates before, 1/s^2, are given."""
-    count, at_rest, contacts = whole(ev)[COUNT], col(ev, AT_REST), ivec(ev.contacts, ev.most)
+    contact = touching(instant)
+    count, at_rest, contacts = (
+        scalars(instant).count,
+        vec(instant.at_rest, instant.most),
+        ivec(instant.contacts, instant.most),
+    )
     # forces that were found to see whether contacts rest may have stopped some
-    evaluate_residuals(ws)
-    read_all_rates(ev, ws)
-    _look(ev, dr, ws)
-    slow, memory = whole(ev)[STRUCK] == 0, mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
+    evaluate_residuals(workspace)
+    read_all_rates(instant, workspace)
+    _look(instant, drive, workspace)
+    slow, memory = scalars(instant).struck == 0, memories_at(workspace.memory, workspace.n_contacts)
     for i in range(count):
-        implied = ms.exact != 0 and np.int64(memory[contacts[i], IMPLIED]) & OF_NORMAL != 0
-        held = whole(ev)[STRUCK] == 0 and col(ev, WAS)[i] == CLOSED and not implied
-        at_rest[i] = 1.0 if held or abs(col(ev, RATE)[i]) <= col(ev, ROUNDING)[i] else 0.0
-        slow = slow or abs(col(ev, RATE)[i]) <= PERHAPS_REST * rate_size(ws, contacts[i])
-    whole(ev)[READY] = 0
-    return find_free(ev, dr, ws, real(ev)[ACCELERATIONS]) if slow else SETTLED
+        implied = method.exact != 0 and np.int64(memory[contacts[i]].implied_rows) & OF_NORMAL != 0
+        held = scalars(instant).struck == 0 and contact[i].mode_before == CLOSED and not implied
+        at_rest[i] = 1.0 if held or abs(contact[i].gap_rate) <= contact[i].rate_rounding else 0.0
+        slow = slow or abs(contact[i].gap_rate) <= PERHAPS_REST * rate_size(workspace, contacts[i])
+    scalars(instant).accelerations_known = 0
+    return find_free(instant, drive, workspace, scalars(instant).acceleration_scale) if slow else SETTLED
 
 
 @internal
-def find_free(ev: Any, dr: Any, ws: Any, accelerations: float) -> int:
+def find_free(instant: Any, drive: Any, workspace: Any, accelerations: float) -> int:
     """Free accelerations, with zero for what is rounding; gaps that open by less than can be seen are at rest."""
-    count, n, scale = whole(ev)[COUNT], ws.n, vec(ws.scale, ws.n)
-    if call_accelerations(dr.accelerations, ws) != OK:
+    contact = touching(instant)
+    count, n, scale = scalars(instant).count, workspace.n, vec(workspace.scale, workspace.n)
+    if call_accelerations(drive.accelerations, workspace) != OK:
         return NO_FREE_ACCELERATIONS
-    read_level(ev, ws, vec(ws.phidd, ws.m_ext), col(ev, B_N), col(ev, B_T), col(ev, B_S))
-    whole(ev)[READY] = 1
-    none = NO_ACCELERATION * max(largest_acceleration(ws), accelerations, 1e-300)
-    real(ev)[NONE] = none
-    forces = force_noise(ev, ws)
-    directions, responses = mat(ev.directions, 3 * count, n), mat(ev.responses, 3 * count, n)
+    read_level(
+        instant,
+        workspace,
+        vec(workspace.phidd, workspace.m_ext),
+        contact.free_gap_acceleration,
+        contact.free_sliding_acceleration,
+        contact.free_sliding_acceleration2,
+    )
+    scalars(instant).accelerations_known = 1
+    none = NO_ACCELERATION * max(largest_acceleration(workspace), accelerations, 1e-300)
+    scalars(instant).no_acceleration = none
+    forces = force_noise(instant, workspace)
+    directions, responses = mat(instant.directions, 3 * count, n), mat(instant.responses, 3 * count, n)
     for i in range(3 * count):
-        largest, noise, of = 0.0, 0.0, col(ev, B_N)
+        largest, noise, of = 0.0, 0.0, contact.free_gap_acceleration
         for j in range(n):
             largest = max(largest, abs(directions[i, j]) * scale[j])
             noise += abs(responses[i, j]) * forces[j]
         if i < count:
-            col(ev, SIZE)[i] = largest
+            contact[i].gradient_size = largest
         elif i < 2 * count:
-            of = col(ev, B_T)
+            of = contact.free_sliding_acceleration
         else:
-            of = col(ev, B_S)
+            of = contact.free_sliding_acceleration2
         k = i % count
         of[k] = 0.0 if abs(of[k]) <= max(none * largest, noise) else of[k]
     for i in range(count):
-        rate = col(ev, RATE)[i]
-        if 0.0 < rate <= unresolved_speed(ws, ivec(ev.contacts, ev.most)[i], -col(ev, B_N)[i]):
-            col(ev, AT_REST)[i] = 1.0
+        rate = contact[i].gap_rate
+        if (
+            0.0
+            < rate
+            <= unresolved_speed(workspace, ivec(instant.contacts, instant.most)[i], -contact[i].free_gap_acceleration)
+        ):
+            vec(instant.at_rest, instant.most)[i] = 1.0
     return SETTLED

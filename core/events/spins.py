@@ -13,42 +13,33 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..contacts.patch3d import CREEPS
 from .reading import slow_sliding
-from .records import (
-    COUNT,
-    HELD_SPIN,
-    KINETIC,
-    KNOWN,
-    SLIDE_RATE,
-    SPIN,
-    STATIC,
-    SWAY_RATE,
-    col,
-    whole,
-)
+from .records import scalars, touching
 
 
 @internal
-def read_spins(ev: Any, dr: Any, ws: Any) -> None:
+def read_spins(instant: Any, drive: Any, workspace: Any) -> None:
     """Spins of the touching contacts, which are open and whose residuals have been evaluated last, and their
     coefficients of friction as if they were at rest."""
-    contacts = ivec(ev.contacts, ev.most)
-    monitor, friction = vec(ws.monitor, 3 * ws.n_contacts), vec(dr.friction, ws.n_contacts)
-    static = vec(ws.contact_sticking, ws.n_contacts)
-    for i in range(whole(ev)[COUNT]):
+    contact = touching(instant)
+    contacts = ivec(instant.contacts, instant.most)
+    monitor, friction = vec(workspace.monitor, 3 * workspace.n_contacts), vec(drive.friction, workspace.n_contacts)
+    static = vec(workspace.contact_sticking, workspace.n_contacts)
+    for i in range(scalars(instant).count):
         k = contacts[i]
-        z = monitor[2 * ws.n_contacts + k] if in_space(ws, k) and static[k] > 0.0 else 0.0
-        slow = CREEPS * slow_sliding(ws, k)
+        z = monitor[2 * workspace.n_contacts + k] if in_space(workspace, k) and static[k] > 0.0 else 0.0
+        slow = CREEPS * slow_sliding(workspace, k)
         size = math.hypot(z, slow)
         left = slow / size if z != 0.0 else 1.0
-        col(ev, SPIN)[i], col(ev, HELD_SPIN)[i] = z, z / size if z != 0.0 else 0.0
-        col(ev, KINETIC)[i], col(ev, STATIC)[i] = left * friction[k], left * static[k]
+        contact[i].spin_rate, contact[i].spin_share = z, z / size if z != 0.0 else 0.0
+        contact[i].kinetic_friction, contact[i].static_friction = left * friction[k], left * static[k]
 
 
 @internal
-def brake_by_spins(ev: Any, dr: Any, ws: Any) -> None:
+def brake_by_spins(instant: Any, drive: Any, workspace: Any) -> None:
     """Coefficients of those that are known to slide or to spin."""
-    contacts, friction = ivec(ev.contacts, ev.most), vec(dr.friction, ws.n_contacts)
-    for i in range(whole(ev)[COUNT]):
-        z, speed = col(ev, SPIN)[i], math.hypot(col(ev, SLIDE_RATE)[i], col(ev, SWAY_RATE)[i])
-        if col(ev, KNOWN)[i] != 0.0 and z != 0.0:
-            col(ev, KINETIC)[i] = friction[contacts[i]] * speed / math.hypot(speed, z)
+    contact = touching(instant)
+    contacts, friction = ivec(instant.contacts, instant.most), vec(drive.friction, workspace.n_contacts)
+    for i in range(scalars(instant).count):
+        z, speed = contact[i].spin_rate, math.hypot(contact[i].sliding_rate, contact[i].sliding_rate2)
+        if vec(instant.known_direction, instant.most)[i] != 0.0 and z != 0.0:
+            contact[i].kinetic_friction = friction[contacts[i]] * speed / math.hypot(speed, z)

@@ -6,68 +6,79 @@ the present turning. Impacts take no torque: so there is another matrix of inver
 
 from typing import Any
 
-from ..assembly.compatibility import solve_equations
 from ..assembly.evaluate import evaluate_residuals
+from ..assembly.redundant_reactions import solve_equations
 from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contacts.coulomb3d import TURNS_HARD
 from ..event_detection.contact_evaluation import can_look, pull_alone
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE, OPEN
+from ..state.modes import CLOSED, OPEN, memories_at
 from .rates import masses
-from .records import AXIS_NOW, FLAG, TURNS, clear, col, whole
+from .records import clear, scalars, touching
 
 
 @internal
-def find_torques(ev: Any, ws: Any, lc: Any, count: int) -> None:
+def find_torques(instant: Any, workspace: Any, loop: Any, count: int) -> None:
     """Of the touching contacts, which are open and whose residuals have been evaluated: the axes that their tangents
     are counted from, and whether they resist turning; then the residual by their normal forces, to `torques`."""
-    contacts, monitor, turns = ivec(ev.contacts, ev.most), vec(ws.monitor, 2 * ws.n_contacts), col(ev, FLAG)
-    memory, lam = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), vec(ws.lam, ws.m_ext)
-    rows, torques, r = ivec(ws.contact_rows, ws.n_contacts), mat(ev.torques, count, ws.n), vec(ws.r, ws.n_ext)
-    whole(ev)[TURNS] = 0
+    contacts, monitor, turns = (
+        ivec(instant.contacts, instant.most),
+        vec(workspace.monitor, 2 * workspace.n_contacts),
+        vec(instant.turns, instant.most),
+    )
+    memory, lam = memories_at(workspace.memory, workspace.n_contacts), vec(workspace.lam, workspace.m_ext)
+    rows, torques, r = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        mat(instant.torques, count, workspace.n),
+        vec(workspace.r, workspace.n_ext),
+    )
+    scalars(instant).contact_torques = 0
     for i in range(count):
         # (`contacts/coulomb3d.py`: what an open contact says of its tangents)
-        says = monitor[ws.n_contacts + contacts[i]] if in_space(ws, contacts[i]) else 0.0
+        says = monitor[workspace.n_contacts + contacts[i]] if in_space(workspace, contacts[i]) else 0.0
         turns[i] = 1.0 if says >= TURNS_HARD else 0.0
-        col(ev, AXIS_NOW)[i] = says - TURNS_HARD * turns[i]
+        touching(instant)[i].tangent_axis = says - TURNS_HARD * turns[i]
         if turns[i] != 0.0:
-            whole(ev)[TURNS] = 1
-    if whole(ev)[TURNS] == 0:
+            scalars(instant).contact_torques = 1
+    if scalars(instant).contact_torques == 0:
         return
     for i in range(count):
-        memory[contacts[i], MODE] = CLOSED
+        memory[contacts[i]].mode = CLOSED
     for i in range(count):
-        clear(torques[i], ws.n)
+        clear(torques[i], workspace.n)
         if turns[i] == 0.0:
             continue
         row = rows[contacts[i]]
-        if can_look(lc, contacts[i]):
+        if can_look(loop, contacts[i]):
             # (of its normal force alone)
-            own, slide = vec(lc.probe_lam, ws.m_ext), ivec(ws.contact_slide_rows, ws.n_contacts)[contacts[i]]
+            own, slide = (
+                vec(loop.probe_lam, workspace.m_ext),
+                ivec(workspace.contact_slide_rows, workspace.n_contacts)[contacts[i]],
+            )
             own[slide] = own[slide + 1] = 0.0
-            pull_alone(ws, lc, contacts[i], row, torques[i])
+            pull_alone(workspace, loop, contacts[i], row, torques[i])
             continue
         before = lam[row]
         for force in range(2):
             lam[row] = -1.0 * force
-            evaluate_residuals(ws)
-            for j in range(ws.n):
+            evaluate_residuals(workspace)
+            for j in range(workspace.n):
                 torques[i, j] = torques[i, j] - r[j] if force == 1 else r[j]
         lam[row] = before
     for i in range(count):
-        memory[contacts[i], MODE] = OPEN
-    evaluate_residuals(ws)
+        memory[contacts[i]].mode = OPEN
+    evaluate_residuals(workspace)
 
 
 @internal
-def press_with_torques(ev: Any, ws: Any, count: int) -> None:
+def press_with_torques(instant: Any, workspace: Any, count: int) -> None:
     """Inverse masses with the torques, where there are any, from `torques`, which hold the gradients too."""
-    if whole(ev)[TURNS] == 0:
+    if scalars(instant).contact_torques == 0:
         return
-    a, n, rhs = masses(ev, count), ws.n, vec(ws.rhs, ws.n + ws.m_act)
-    pressing, torques = mat(ev.pressing_a, 3 * count, 3 * count), mat(ev.torques, count, n)
-    directions = mat(ev.directions, 3 * count, n)
+    a, n, rhs = masses(instant, count), workspace.n, vec(workspace.rhs, workspace.n + workspace.m_act)
+    pressing, torques = mat(instant.pressing_a, 3 * count, 3 * count), mat(instant.torques, count, n)
+    directions = mat(instant.directions, 3 * count, n)
     for i in range(3 * count):
         for j in range(3 * count):
             pressing[i, j] = a[i, j]
@@ -79,9 +90,9 @@ def press_with_torques(ev: Any, ws: Any, count: int) -> None:
             continue
         for j in range(n):
             rhs[j] = torques[i, j] - directions[i, j]
-        for j in range(ws.m_act):
+        for j in range(workspace.m_act):
             rhs[n + j] = 0.0
-        solve_equations(ws, ws.kkt_query)
+        solve_equations(workspace, workspace.kkt_query)
         for k in range(3 * count):
             if a[k, k] == 0.0:
                 continue

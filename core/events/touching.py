@@ -13,71 +13,62 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
-from ..state.modes import CLOSED, GAP_START, MEMORY_SIZE, MODE, SLIDE, SLIDE_START, STICKS
+from ..state.modes import CLOSED, STICKS, memories_at
 from ..state.run_records import COUNTS_SIZE, HERE
-from .laws import FORCE, MASSLESS
-from .records import (
-    COMPANION,
-    COUNT,
-    GAP,
-    IMMOVABLE_CONTACT,
-    RATE,
-    SETTLED,
-    SLIDE_RATE,
-    SLIDE_VALUE,
-    WHO,
-    col,
-    delassus,
-    whole,
-)
+from .impact_law_codes import FORCE, MASSLESS
+from .records import IMMOVABLE_CONTACT, SETTLED, delassus, scalars, touching
 
 
 @internal
-def find_touching(ev: Any, dr: Any, ws: Any) -> bool:
+def find_touching(instant: Any, drive: Any, workspace: Any) -> bool:
     """Constraint contacts without a gap at the current point: closed ones, pending ones, and others that touch.
     Those at massless ends are left out: they take no impulse. False if there is no room for them."""
-    memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
-    pending, rows = ivec(dr.pending, ws.n_contacts), ivec(ws.contact_rows, ws.n_contacts)
-    phi, scale, contacts = vec(ws.phi, ws.m_ext), vec(ws.row_scale, ws.m_ext), ivec(ev.contacts, ev.most)
-    level, count, sleeping = GAP_ROUNDING * position_level(ws), 0, ivec(ws.sleeping, ws.n_contacts)
-    companion = ivec(ws.contact_companion, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    memory, law = memories_at(workspace.memory, workspace.n_contacts), ivec(drive.law, workspace.n_contacts)
+    pending, rows = ivec(drive.pending, workspace.n_contacts), ivec(workspace.contact_rows, workspace.n_contacts)
+    phi, scale, contacts = (
+        vec(workspace.phi, workspace.m_ext),
+        vec(workspace.row_scale, workspace.m_ext),
+        ivec(instant.contacts, instant.most),
+    )
+    level, count, sleeping = GAP_ROUNDING * position_level(workspace), 0, ivec(workspace.sleeping, workspace.n_contacts)
+    companion = ivec(workspace.contact_companion, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if pending[k] != 0 and companion[k] != 0:
             pending[k + companion[k]] = 1
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE or law[k] == MASSLESS or sleeping[k] != 0:
             continue
-        if pending[k] != 0 or memory[k, MODE] == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
-            if count == ev.most:
+        if pending[k] != 0 or memory[k].mode == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
+            if count == instant.most:
                 return False
-            contacts[count], col(ev, COMPANION)[count] = k, companion[k]
+            contacts[count], touching(instant)[count].companion = k, companion[k]
             count += 1
-    whole(ev)[COUNT] = count
+    scalars(instant).count = count
     return True
 
 
 @internal
-def tell_touching(ev: Any, ws: Any, lc: Any) -> None:
+def tell_touching(instant: Any, workspace: Any, loop: Any) -> None:
     """Where some of the touching contacts cannot be evaluated alone, evaluate all of them with the system."""
-    contacts, alone = ivec(ev.contacts, ev.most), True
-    for i in range(whole(ev)[COUNT]):
-        alone = alone and can_look(lc, contacts[i])
+    contacts, alone = ivec(instant.contacts, instant.most), True
+    for i in range(scalars(instant).count):
+        alone = alone and can_look(loop, contacts[i])
     if not alone:
-        evaluate_tangent(ws, 0.0, 0.0)
+        evaluate_tangent(workspace, 0.0, 0.0)
 
 
 @internal
-def find_gradient(ws: Any, lc: Any, k: int, row: int, out: Any) -> None:
+def find_gradient(workspace: Any, loop: Any, k: int, row: int, out: Any) -> None:
     """Gradient (n,) of row `row`, one of contact k, after `tell_touching`, and `tell_gradients` where k can be
     evaluated alone."""
-    if can_look(lc, k):
-        gradient_alone(ws, lc, k, row, out)
+    if can_look(loop, k):
+        gradient_alone(workspace, loop, k, row, out)
         return
-    start, values = ivec(ws.gradient_start, ws.m_ext), vec(ws.values, ws.n_values)
-    for i in range(ws.n):
+    start, values = ivec(workspace.gradient_start, workspace.m_ext), vec(workspace.values, workspace.n_values)
+    for i in range(workspace.n):
         out[i] = 0.0
     for e in range(start[row], start[row + 1]):
-        out[ivec(ws.gradient_col, e + 1)[e]] = values[ivec(ws.gradient_slot, e + 1)[e]]
+        out[ivec(workspace.gradient_col, e + 1)[e]] = values[ivec(workspace.gradient_slot, e + 1)[e]]
 
 
 @internal
@@ -92,12 +83,21 @@ def entries_of(x: Any, n: int, some: Any) -> int:
 
 
 @internal
-def refuse_immovable(ev: Any, ws: Any, count: int) -> int:
+def refuse_immovable(instant: Any, workspace: Any, count: int) -> int:
     """A contact whose shapes joints and drivers hold both takes no impulse."""
-    n, values, slots = ws.n, vec(ws.values, ws.n_values), ivec(ws.mass_slot, ws.n_mass)
-    entry_row, entry_col = ivec(ws.entry_row, ws.n_values), ivec(ws.entry_col, ws.n_values)
-    directions, a, largest, scale = mat(ev.directions, 2 * count, n), delassus(ev, count), 0.0, vec(ws.scale, n)
-    for e in range(ws.n_mass):
+    n, values, slots = (
+        workspace.n,
+        vec(workspace.values, workspace.n_values),
+        ivec(workspace.mass_slot, workspace.n_mass),
+    )
+    entry_row, entry_col = ivec(workspace.entry_row, workspace.n_values), ivec(workspace.entry_col, workspace.n_values)
+    directions, a, largest, scale = (
+        mat(instant.directions, 2 * count, n),
+        delassus(instant, count),
+        0.0,
+        vec(workspace.scale, n),
+    )
+    for e in range(workspace.n_mass):
         i = entry_row[slots[e]]
         if i == entry_col[slots[e]]:
             largest = max(largest, values[slots[e]] * scale[i] ** 2)
@@ -105,7 +105,7 @@ def refuse_immovable(ev: Any, ws: Any, count: int) -> int:
         length, of_mass = 0.0, 0.0
         for j in range(n):
             length += (scale[j] * directions[i, j]) ** 2
-        for e in range(ws.n_mass):
+        for e in range(workspace.n_mass):
             s, row, column = slots[e], entry_row[slots[e]], entry_col[slots[e]]
             sizes = (scale[row] * scale[column]) ** 2
             of_mass += sizes * directions[i, row] * values[s] * directions[i, column]
@@ -114,53 +114,62 @@ def refuse_immovable(ev: Any, ws: Any, count: int) -> int:
         # (a frame without mass of its own counts as the heaviest)
         free = length * length / (of_mass if of_mass != 0.0 else largest * length)
         if not a[i, i] > IMMOVABLE * free:
-            whole(ev)[WHO] = ivec(ev.contacts, ev.most)[i]
+            scalars(instant).failed_contact = ivec(instant.contacts, instant.most)[i]
             return IMMOVABLE_CONTACT
     return SETTLED
 
 
 @internal
-def read_rates(ev: Any, ws: Any) -> None:
+def read_rates(instant: Any, workspace: Any) -> None:
     """Rates of gaps and sliding distances, as the residuals have been evaluated last."""
-    _read(ev, ws, vec(ws.phid, ws.m_ext), col(ev, RATE), col(ev, SLIDE_RATE))
+    _read(
+        instant,
+        workspace,
+        vec(workspace.phid, workspace.m_ext),
+        touching(instant).gap_rate,
+        touching(instant).sliding_rate,
+    )
 
 
 @internal
-def _read(ev: Any, ws: Any, level: Any, of_gap: Any, of_slide: Any) -> None:
-    contacts = ivec(ev.contacts, ev.most)
-    rows, slides = ivec(ws.contact_rows, ws.n_contacts), ivec(ws.contact_slide_rows, ws.n_contacts)
-    for i in range(whole(ev)[COUNT]):
+def _read(instant: Any, workspace: Any, level: Any, of_gap: Any, of_slide: Any) -> None:
+    contacts = ivec(instant.contacts, instant.most)
+    rows, slides = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        ivec(workspace.contact_slide_rows, workspace.n_contacts),
+    )
+    for i in range(scalars(instant).count):
         k = contacts[i]
         of_gap[i] = level[rows[k]]
         of_slide[i] = level[slides[k]] if slides[k] >= 0 else 0.0
 
 
 @internal
-def read_values(ev: Any, ws: Any) -> None:
+def read_values(instant: Any, workspace: Any) -> None:
     """Gaps (of closed contacts what rounding has left them) and sliding distances, m."""
-    gaps, distances = col(ev, GAP), col(ev, SLIDE_VALUE)
-    memory, contacts = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(ev.contacts, ev.most)
-    _read(ev, ws, vec(ws.phi, ws.m_ext), gaps, distances)
-    for i in range(whole(ev)[COUNT]):
+    gaps, distances = touching(instant).gap, touching(instant).sliding_distance
+    memory, contacts = memories_at(workspace.memory, workspace.n_contacts), ivec(instant.contacts, instant.most)
+    _read(instant, workspace, vec(workspace.phi, workspace.m_ext), gaps, distances)
+    for i in range(scalars(instant).count):
         k = contacts[i]
-        if memory[k, MODE] == CLOSED:
-            gaps[i] += memory[k, GAP_START]
-            distances[i] += memory[k, SLIDE_START] if memory[k, SLIDE] == STICKS else 0.0
+        if memory[k].mode == CLOSED:
+            gaps[i] += memory[k].closed_gap
+            distances[i] += memory[k].slide_start if memory[k].slide_mode == STICKS else 0.0
 
 
 @internal
-def tangent_product(ev: Any, ws: Any, c_q: float, c_v: float, x: Any) -> None:
+def tangent_product(instant: Any, workspace: Any, c_q: float, c_v: float, x: Any) -> None:
     """(c_v D + c_q K) x without the mass matrix goes to `sum`, that of the magnitudes of all terms to `terms`; both are
     added."""
-    total, sizes = vec(ev.sum, ws.n), vec(ev.terms, ws.n)
-    slots, values = ivec(ws.mass_slot, ws.n_mass), vec(ws.values, ws.n_values)
-    entry_row, entry_col = ivec(ws.entry_row, ws.n_values), ivec(ws.entry_col, ws.n_values)
-    evaluate_tangent(ws, c_q, c_v)
-    with_motion = vec(ev.slots_work, ws.n_mass)
-    for e in range(ws.n_mass):
+    total, sizes = vec(instant.sum, workspace.n), vec(instant.terms, workspace.n)
+    slots, values = ivec(workspace.mass_slot, workspace.n_mass), vec(workspace.values, workspace.n_values)
+    entry_row, entry_col = ivec(workspace.entry_row, workspace.n_values), ivec(workspace.entry_col, workspace.n_values)
+    evaluate_tangent(workspace, c_q, c_v)
+    with_motion = vec(instant.slots_work, workspace.n_mass)
+    for e in range(workspace.n_mass):
         with_motion[e] = values[slots[e]]
-    evaluate_tangent(ws, 0.0, 0.0)
-    for e in range(ws.n_mass):
+    evaluate_tangent(workspace, 0.0, 0.0)
+    for e in range(workspace.n_mass):
         s = slots[e]
         term = (with_motion[e] - values[s]) * x[entry_col[s]]
         total[entry_row[s]] += term
@@ -168,40 +177,49 @@ def tangent_product(ev: Any, ws: Any, c_q: float, c_v: float, x: Any) -> None:
 
 
 @internal
-def force_noise(ev: Any, ws: Any) -> Any:
+def force_noise(instant: Any, workspace: Any) -> Any:
     """What rounding of the coordinates leaves in the forces (n,), N (`ContactSide.force_noise`)."""
-    scale, q, noise = vec(ws.scale, ws.n), vec(ws.q, ws.n_ext), vec(ev.noise, ws.n)
-    total, sizes, largest = vec(ev.sum, ws.n), vec(ev.terms, ws.n), 0.0
-    for i in range(ws.n):
+    scale, q, noise = (
+        vec(workspace.scale, workspace.n),
+        vec(workspace.q, workspace.n_ext),
+        vec(instant.noise, workspace.n),
+    )
+    total, sizes, largest = vec(instant.sum, workspace.n), vec(instant.terms, workspace.n), 0.0
+    for i in range(workspace.n):
         largest = max(largest, abs(q[i]) / scale[i])
         total[i] = sizes[i] = 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         noise[i] = COORDINATE_NOISE * largest * scale[i]
-    tangent_product(ev, ws, 1.0, 0.0, noise)
+    tangent_product(instant, workspace, 1.0, 0.0, noise)
     return sizes
 
 
 @internal
-def free_jerks(ev: Any, ws: Any, jerks: Any) -> None:
+def free_jerks(instant: Any, workspace: Any, jerks: Any) -> None:
     """Rates of the gaps' free accelerations, m/s^3, as the forces' dependence on the motion makes them:
     M a' = -(K v + D a). What is not more than rounding, of the sum or of velocities and accelerations, is zero."""
-    count, n, total, sizes = whole(ev)[COUNT], ws.n, vec(ev.sum, ws.n), vec(ev.terms, ws.n)
-    responses, noise, scale = mat(ev.responses, 2 * count, n), vec(ev.noise, n), vec(ws.scale, n)
+    count, n, total, sizes = (
+        scalars(instant).count,
+        workspace.n,
+        vec(instant.sum, workspace.n),
+        vec(instant.terms, workspace.n),
+    )
+    responses, noise, scale = mat(instant.responses, 2 * count, n), vec(instant.noise, n), vec(workspace.scale, n)
     for i in range(n):
         total[i] = sizes[i] = 0.0
-        noise[i] = RATE_ROUNDING * rate_level(ws) * scale[i]
-    tangent_product(ev, ws, 1.0, 0.0, noise)
+        noise[i] = RATE_ROUNDING * rate_level(workspace) * scale[i]
+    tangent_product(instant, workspace, 1.0, 0.0, noise)
     for i in range(n):
-        noise[i] = NO_ACCELERATION * acceleration_level(ws) * scale[i]
-    tangent_product(ev, ws, 0.0, 1.0, noise)
+        noise[i] = NO_ACCELERATION * acceleration_level(workspace) * scale[i]
+    tangent_product(instant, workspace, 0.0, 1.0, noise)
     for i in range(count):
         jerks[i] = 0.0
         for j in range(n):
             jerks[i] += abs(responses[i, j]) * sizes[j]
     for i in range(n):
         total[i] = sizes[i] = 0.0
-    tangent_product(ev, ws, 1.0, 0.0, vec(ws.v, ws.n_ext))
-    tangent_product(ev, ws, 0.0, 1.0, vec(ws.a, ws.n_ext))
+    tangent_product(instant, workspace, 1.0, 0.0, vec(workspace.v, workspace.n_ext))
+    tangent_product(instant, workspace, 0.0, 1.0, vec(workspace.a, workspace.n_ext))
     for i in range(count):
         jerk, size = 0.0, 0.0
         for j in range(n):
@@ -211,6 +229,6 @@ def free_jerks(ev: Any, ws: Any, jerks: Any) -> None:
 
 
 @internal
-def looks_again(dr: Any) -> int:
+def looks_again(drive: Any) -> int:
     """How often events have been handled at this instant, this time included."""
-    return int(ivec(dr.counts, COUNTS_SIZE)[HERE])
+    return int(ivec(drive.counts, COUNTS_SIZE)[HERE])

@@ -9,14 +9,14 @@ shape is held against turning within the step, whichever way its load would turn
 import math
 from typing import Any
 
-from ..assembly.compatibility import solve_equations
+from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contacts.normal3d import SIZE, pair_of
 from ..contacts.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
 from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import cross, times
-from .records import COUNT, FLAG, clear, col, whole
+from .records import clear, scalars
 
 TURNING_ROWS = 3
 
@@ -35,16 +35,16 @@ def axes_of_contact(coord: Any, gradient: Any, n: int) -> Any:
 
 
 @internal
-def find_turning_rows(ev: Any, ws: Any, lc: Any, first: int, arms: Any) -> None:
+def find_turning_rows(instant: Any, workspace: Any, loop: Any, first: int, arms: Any) -> None:
     """Gradients of the angular velocities of the touching contacts, to `directions` from row `first` on, the motions
     that unit torques cause, to `responses`, and rho and sigma or -r, m, to arms (rows,). Zeros where nothing
     resists."""
-    count, n, rhs = whole(ev)[COUNT], ws.n, vec(ws.rhs, ws.n + ws.m_act)
+    count, n, rhs = scalars(instant).count, workspace.n, vec(workspace.rhs, workspace.n + workspace.m_act)
     rows = first + TURNING_ROWS * count
-    directions, responses = mat(ev.directions, rows, n), mat(ev.responses, rows, n)
+    directions, responses = mat(instant.directions, rows, n), mat(instant.responses, rows, n)
     for i in range(count):
-        k, turns = ivec(ev.contacts, ev.most)[i], col(ev, FLAG)[i] != 0.0
-        batch = probe_of(lc, k)
+        k, turns = ivec(instant.contacts, instant.most)[i], vec(instant.turns, instant.most)[i] != 0.0
+        batch = probe_of(loop, k)
         coord, par = ivec(batch.coord, SIZE), vec(batch.par, FRICTION_RADIUS + 1)
         for block in range(TURNING_ROWS):
             row = first + block * count + i
@@ -55,11 +55,11 @@ def find_turning_rows(ev: Any, ws: Any, lc: Any, first: int, arms: Any) -> None:
                 continue
             a, b, c = axes_of_contact(coord, directions[i], n)
             axis = a if block == 0 else b if block == 1 else c
-            turning_gradient(vec(ws.q, ws.n_ext), coord, pair_of(batch, 0), axis, n, directions[row])
+            turning_gradient(vec(workspace.q, workspace.n_ext), coord, pair_of(batch, 0), axis, n, directions[row])
             for j in range(n):
                 rhs[j] = directions[row, j]
-            for j in range(ws.m_act):
+            for j in range(workspace.m_act):
                 rhs[n + j] = 0.0
-            solve_equations(ws, ws.kkt_query)
+            solve_equations(workspace, workspace.kkt_query)
             for j in range(n):
                 responses[row, j] = rhs[j]

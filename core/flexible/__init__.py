@@ -1,7 +1,7 @@
 """Flexible bodies: reduction, the partition into a contact region and the rest, and what goes on along a body."""
 
 from .finite_elements import FiniteElements, finite_elements, read_finite_elements
-from .partition import local_impulse, partition_rod
+from .impact_substructure import local_impulse, partition_rod
 from .reduced_solid import reduced_body
 from .reduction import Reduction, craig_bampton
 from .rod_fields import RodFields, rod_fields

@@ -12,19 +12,7 @@ from ..compiled.jit import caller, compiled, internal
 from ..compiled.views import ivec, uvec, vec
 from .choice import choose_rows
 from .ordering import choose_order, order_room
-from .record import (
-    ANALYZE_SPARSE,
-    DENSE,
-    GROWTH,
-    IN_INDEX,
-    INDEX,
-    LU_TYPE,
-    OK,
-    SCRATCH,
-    UNREADY,
-    VALUES,
-    WANT_ROOM,
-)
+from .record import ANALYZE_SPARSE, DENSE, GROWTH, IN_INDEX, INDEX, LU_TYPE, OK, SCRATCH, UNREADY, VALUES, WANT_ROOM
 from .solve import factor
 from .symbolic import write_analysis
 

@@ -59,50 +59,50 @@ def adams_coefficients(s: Any, p: int, implicit: Any, explicit: Any, constants: 
 
 
 @internal
-def adams_step(ws: Any, ms: Any, h: float) -> int:
-    p, n = int(vec(ms.choice, CHOICE_SIZE)[K]), ws.n_ext
-    table = weight_rows(ms)
+def adams_step(workspace: Any, method: Any, h: float) -> int:
+    p, n = int(vec(method.choice, CHOICE_SIZE)[K]), workspace.n_ext
+    table = weight_rows(method)
     implicit, explicit, constants = table[IMPLICIT], table[EXPLICIT], table[CONSTANTS]
-    if nodes(ms, h, p, table[NODES]):
+    if nodes(method, h, p, table[NODES]):
         adams_coefficients(table[NODES], p, implicit, explicit, constants)
         extrapolation_weights(table[NODES], p, table[EXTRAPOLATION])
-    q, v = vec(ws.q, n), vec(ws.v, n)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
     c_v = h * implicit[0]
-    newest = history_row(ws, ms, 0)
+    newest = history_row(workspace, method, 0)
     for i in range(n):
         q_star[i], v_star[i] = newest[i], newest[n + i]
     for j in range(p - 1):
-        row = history_row(ws, ms, j)
+        row = history_row(workspace, method, j)
         w = h * implicit[j + 1]
         for i in range(n):
             q_star[i] += w * row[n + i]
             v_star[i] += w * row[2 * n + i]
     for i in range(n):
         q_star[i] += c_v * v_star[i]
-    clear(ws.a, ws.n)
-    clear(ws.lam, ws.m_ext)
-    predict(ws, ms, table[EXTRAPOLATION], 0, p)
-    status = finish_stage(ws, history_time(ms, 0) + h, c_v)
+    clear(workspace.a, workspace.n)
+    clear(workspace.lam, workspace.m_ext)
+    predict(workspace, method, table[EXTRAPOLATION], 0, p)
+    status = finish_stage(workspace, history_time(method, 0) + h, c_v)
     if status != OK:
         return status
-    difference = vec(ws.rhs, ws.n)
+    difference = vec(workspace.rhs, workspace.n)
     norm, of_work = 0.0, 0.0
-    weight_v = vec(ws.weight_v, n)
+    weight_v = vec(workspace.weight_v, n)
     for kind in range(2):
-        for i in range(ws.n):
+        for i in range(workspace.n):
             difference[i] = (v[i] if kind else q[i]) - newest[kind * n + i]
         for j in range(p):
-            row = history_row(ws, ms, j)
-            for i in range(ws.n):
+            row = history_row(workspace, method, j)
+            for i in range(workspace.n):
                 difference[i] -= h * explicit[j] * row[(kind + 1) * n + i]
-        norm = max(norm, weighted_norm(difference, weight_v if kind else vec(ws.weight_q, n), ws.n))
-    for i in range(n - ws.n_work, n):
+        norm = max(norm, weighted_norm(difference, weight_v if kind else vec(workspace.weight_q, n), workspace.n))
+    for i in range(n - workspace.n_work, n):
         off = v[i] - newest[n + i]
         for j in range(p):
-            off -= h * explicit[j] * history_row(ws, ms, j)[2 * n + i]
+            off -= h * explicit[j] * history_row(workspace, method, j)[2 * n + i]
         of_work = max(of_work, abs(off) / weight_v[i])
-    error = vec(ms.error, 2)
+    error = vec(method.error, 2)
     error[0] = max(norm, of_work) * abs(constants[0] / (constants[1] - constants[0]))
     error[1] = p
     return OK

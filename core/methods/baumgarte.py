@@ -28,8 +28,8 @@ ALPHA, BETA, BY_STEP, SCHEME = 0, 1, 2, 3
 
 
 @inlined
-def _set_stabilisation(ws: Any, parameters: Any, h: float) -> None:
-    control = vec(ws.control, CONTROL_SIZE)
+def _set_stabilisation(workspace: Any, parameters: Any, h: float) -> None:
+    control = vec(workspace.control, CONTROL_SIZE)
     if parameters[BY_STEP] != 0.0:
         control[STAGE_ALPHA], control[STAGE_BETA] = 1.0 / h, np.sqrt(2.0) / h
     else:
@@ -37,48 +37,48 @@ def _set_stabilisation(ws: Any, parameters: Any, h: float) -> None:
 
 
 @internal
-def baumgarte_explicit_step(ws: Any, ms: Any, h: float) -> int:
+def baumgarte_explicit_step(workspace: Any, method: Any, h: float) -> int:
     """A step of an explicit formula.
 
     The newest row has the accelerations of the first stage unless it begins a history (they are then those of the
     constraints themselves) or alpha and beta have changed with h.
     """
-    parameters = vec(ms.parameters, 8)
-    _set_stabilisation(ws, parameters, h)
-    reuse = rows_available(ms) > 1 and parameters[BY_STEP] == 0.0
-    return explicit_step(ws, ms, h, int(parameters[SCHEME]), reuse)
+    parameters = vec(method.parameters, 8)
+    _set_stabilisation(workspace, parameters, h)
+    reuse = rows_available(method) > 1 and parameters[BY_STEP] == 0.0
+    return explicit_step(workspace, method, h, int(parameters[SCHEME]), reuse)
 
 
 @internal
-def baumgarte_sdirk_step(ws: Any, ms: Any, h: float) -> int:
+def baumgarte_sdirk_step(workspace: Any, method: Any, h: float) -> int:
     """A step of the SDIRK formula of order 4, over all coordinates."""
-    _set_stabilisation(ws, vec(ms.parameters, 8), h)
-    return sdirk_step(ws, ms, h)
+    _set_stabilisation(workspace, vec(method.parameters, 8), h)
+    return sdirk_step(workspace, method, h)
 
 
 @internal
-def baumgarte_trapezoidal_step(ws: Any, ms: Any, h: float) -> int:
+def baumgarte_trapezoidal_step(workspace: Any, method: Any, h: float) -> int:
     """A step of the trapezoidal rule, over all coordinates; error estimate h^2 (a_{n+1} - a_n) / 12 of positions, and
     that of velocities."""
-    _set_stabilisation(ws, vec(ms.parameters, 8), h)
-    n = ws.n_ext
-    row = history_row(ws, ms, 0)
-    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    _set_stabilisation(workspace, vec(method.parameters, 8), h)
+    n = workspace.n_ext
+    row = history_row(workspace, method, 0)
+    q_star, v_star, a = vec(workspace.q_star, n), vec(workspace.v_star, n), vec(workspace.a, n)
     for i in range(n):
         q_star[i] = row[i] + h * row[n + i] + 0.25 * h * h * row[2 * n + i]
         v_star[i] = row[n + i] + 0.5 * h * row[2 * n + i]
-    predict_linearly(ws, ms, h, 1.0)
-    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, 0.25 * h * h, 0.5 * h)
+    predict_linearly(workspace, method, h, 1.0)
+    status = call_stage(workspace.stage_function, workspace, history_time(method, 0) + h, 0.25 * h * h, 0.5 * h)
     if status != OK:
         return status
-    evaluate_power(ws)
-    finish_work(ws, row, h)
-    error, aux = vec(ws.rhs, ws.n), vec(ws.aux, n)
-    for i in range(ws.n):
+    evaluate_power(workspace)
+    finish_work(workspace, row, h)
+    error, aux = vec(workspace.rhs, workspace.n), vec(workspace.aux, n)
+    for i in range(workspace.n):
         error[i] = h * h / 12.0 * (a[i] - row[2 * n + i])
     for i in range(n):
         aux[i] = a[i]
-    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    vec(ms.error, 2)[0] = max(norm, velocity_error(ws, ms, h))
-    vec(ms.error, 2)[1] = 2.0
+    norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
+    vec(method.error, 2)[0] = max(norm, velocity_error(workspace, method, h))
+    vec(method.error, 2)[1] = 2.0
     return OK

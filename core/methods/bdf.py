@@ -15,16 +15,16 @@ from .multistep import bdf_stage, nodes, predictor_error, weight_rows
 
 
 @internal
-def bdf_step(ws: Any, ms: Any, h: float) -> int:
-    k = int(vec(ms.choice, CHOICE_SIZE)[K])
-    table = weight_rows(ms)
-    if nodes(ms, h, k + 1, table[0]):
+def bdf_step(workspace: Any, method: Any, h: float) -> int:
+    k = int(vec(method.choice, CHOICE_SIZE)[K])
+    table = weight_rows(method)
+    if nodes(method, h, k + 1, table[0]):
         bdf_coefficients(table[0], k, table[1])
         extrapolation_weights(table[0], k + 1, table[2])
-    status = bdf_stage(ws, ms, h, k, table[1], table[2])
+    status = bdf_stage(workspace, method, h, k, table[1], table[2])
     if status != OK:
         return status
-    span = history_time(ms, 0) + h - history_time(ms, k)
-    vec(ms.error, 2)[0] = predictor_error(ws, ms, table[2], k + 1) * h / span
-    vec(ms.error, 2)[1] = k
+    span = history_time(method, 0) + h - history_time(method, k)
+    vec(method.error, 2)[0] = predictor_error(workspace, method, table[2], k + 1) * h / span
+    vec(method.error, 2)[1] = k
     return OK

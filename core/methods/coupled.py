@@ -70,65 +70,65 @@ SLOW_SWEEP, EXPLODING = 0.5, 5.0
 
 
 @internal
-def _refactor(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
+def _refactor(workspace: Any, method: Any, t: float, h: float, simple: bool) -> int:
     """New matrices at the stage in the middle."""
-    table = weight_rows(ms)
-    load_stage(ws, ms, stage_count(ms) // 2, t, h)
+    table = weight_rows(method)
+    load_stage(workspace, method, stage_count(method) // 2, t, h)
     c_v = 0.0 if simple else h * table[EMBEDDED, GAMMA]
     table[MEMORY, SWEEP_RATE] = 1.0
-    return refactor(ws, c_v * c_v, c_v)
+    return refactor(workspace, c_v * c_v, c_v)
 
 
 @internal
-def _sweep(ws: Any, ms: Any, t: float, h: float, slack: float, simple: bool) -> int:
+def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple: bool) -> int:
     """One pass over the stages: corrections of their accelerations and multipliers."""
-    n, multipliers = ws.n_ext, ws.m_act + ws.n_implied
-    table, rows = weight_rows(ms), stage_rows(ws)
-    q, v, active = vec(ws.q, n), vec(ws.v, n), ivec(ws.active, multipliers)
-    increment = vec(ws.rhs, ws.n + multipliers)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
-    for i in range(stage_count(ms)):
-        load_stage(ws, ms, i, t, h)
+    n, multipliers = workspace.n_ext, workspace.m_act + workspace.n_implied
+    table, rows = weight_rows(method), stage_rows(workspace)
+    q, v, active = vec(workspace.q, n), vec(workspace.v, n), ivec(workspace.active, multipliers)
+    increment = vec(workspace.rhs, workspace.n + multipliers)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    for i in range(stage_count(method)):
+        load_stage(workspace, method, i, t, h)
         for j in range(i):
             shift_q = h * h * table[SHIFT2, COUPLED_STAGES * i + j]
             shift_v = h * table[SHIFT, COUPLED_STAGES * i + j]
-            for l in range(ws.n):
+            for l in range(workspace.n):
                 q[l] += shift_q * rows[j, 3 * n + l]
                 v[l] += shift_v * rows[j, 3 * n + l]
-        evaluate_residuals(ws)
-        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        evaluate_residuals(workspace)
+        status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status == OK and simple:
-            status = refactor(ws, 0.0, 0.0)
+            status = refactor(workspace, 0.0, 0.0)
         if status != OK:
             return status
-        solve_increment(ws, ws.kkt)
+        solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
         row = rows[i]
-        for l in range(ws.n):
+        for l in range(workspace.n):
             # with what the inner loop has corrected: the next sweep need not find it again
             row[l] = q[l]
             row[n + l] = v[l]
             row[2 * n + l] += increment[l]
             row[3 * n + l] = increment[l]
         for l in range(multipliers):
-            row[4 * n + active[l]] += increment[ws.n + l]
+            row[4 * n + active[l]] += increment[workspace.n + l]
     return OK
 
 
 @internal
-def _move(ws: Any, ms: Any, h: float) -> float:
+def _move(workspace: Any, method: Any, h: float) -> float:
     """Move the stages' points by the corrections of their accelerations. Returns the largest weighted norm of a move.
 
     Independent coordinates are then those of the tableau; for the dependent ones it is a prediction.
     """
-    n = ws.n_ext
-    stages = stage_count(ms)
-    table, rows = weight_rows(ms), stage_rows(ws)
-    weight_q, weight_v = vec(ws.weight_q, n), vec(ws.weight_v, n)
+    n = workspace.n_ext
+    stages = stage_count(method)
+    table, rows = weight_rows(method), stage_rows(workspace)
+    weight_q, weight_v = vec(workspace.weight_q, n), vec(workspace.weight_v, n)
     largest = 0.0
     for i in range(stages):
         row, of_q, of_v = rows[i], 0.0, 0.0
-        for l in range(ws.n):
+        for l in range(workspace.n):
             move_q, move_v, moved_q, moved_v = 0.0, 0.0, 0.0, 0.0
             for j in range(stages):
                 correction, e = rows[j, 3 * n + l], COUPLED_STAGES * i + j
@@ -143,15 +143,15 @@ def _move(ws: Any, ms: Any, h: float) -> float:
         if not of_q + of_v < np.inf:  # NaN, which `max` could lose
             return np.inf
         largest = max(largest, of_q, of_v)
-    return np.sqrt(largest / max(ws.n, 1))
+    return np.sqrt(largest / max(workspace.n, 1))
 
 
 @internal
-def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
+def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> int:
     """Sweeps until the stages have converged."""
-    control, memory = vec(ws.control, CONTROL_SIZE), weight_rows(ms)[MEMORY]
-    counters = ivec(ws.counters, COUNTERS_SIZE)
-    stages = stage_count(ms)
+    control, memory = vec(workspace.control, CONTROL_SIZE), weight_rows(method)[MEMORY]
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    stages = stage_count(method)
     tolerance = control[NEWTON_TOLERANCE]
     # before the sweeps have converged, the constraints need to hold only a hundred times better than they do
     slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
@@ -159,10 +159,10 @@ def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
     previous, before = np.inf, np.inf
     renewed = 0
     for k in range(int(control[MAX_OUTER]) * (1 if simple else SWEEPS)):
-        status = _sweep(ws, ms, t, h, slack, simple)
+        status = _sweep(workspace, method, t, h, slack, simple)
         if status != OK:
             return status
-        norm = _move(ws, ms, h)
+        norm = _move(workspace, method, h)
         if not np.isfinite(norm):
             return NOT_FINITE
         renew = False
@@ -174,7 +174,7 @@ def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
                 stalled = norm > 0.8 * before
                 if (simple and contraction > 0.9) or (stalled and renewed > 0):
                     memory[SWEEP_RATE] = 1.0
-                    vec(ws.rate, RATE_SIZE)[FAILED_NORM] = contraction
+                    vec(workspace.rate, RATE_SIZE)[FAILED_NORM] = contraction
                     return OUTER_DIVERGED
                 slow = contraction > SLOW_SWEEP and k > 1
                 renew = not simple and renewed < 2 and (slow or contraction > EXPLODING)
@@ -192,25 +192,25 @@ def _iterate(ws: Any, ms: Any, t: float, h: float, simple: bool) -> int:
             # the matrix of the predicted points is not good enough: that of the present ones is
             renewed += 1
             before = np.inf
-            status = _refactor(ws, ms, t, h, simple)
+            status = _refactor(workspace, method, t, h, simple)
             if status != OK:
                 return status
     return OUTER_SLOW
 
 
 @internal
-def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
+def solve_coupled(workspace: Any, method: Any, t: float, h: float) -> int:
     """Solve all stages of a step of size h from t, into `stage_rows`. Returns OK or what went wrong.
 
     On failure with old matrices it tries once more with new ones, then once more from stages at rest.
     """
-    rate, memory = vec(ws.rate, RATE_SIZE), weight_rows(ms)[MEMORY]
-    stages = stage_count(ms)
-    simple = vec(ws.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += stages
+    rate, memory = vec(workspace.rate, RATE_SIZE), weight_rows(method)[MEMORY]
+    stages = stage_count(method)
+    simple = vec(workspace.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
+    ivec(workspace.counters, COUNTERS_SIZE)[STAGES] += stages
     if h > memory[LAST_STEP] > 0.0:
         memory[SWEEP_RATE] *= (h / memory[LAST_STEP]) ** 2
-    other_step = abs(h * weight_rows(ms)[EMBEDDED, GAMMA] / rate[FACTOR_CV] - 1.0) > STEP_CHANGE
+    other_step = abs(h * weight_rows(method)[EMBEDDED, GAMMA] / rate[FACTOR_CV] - 1.0) > STEP_CHANGE
     fresh = (
         rate[FACTOR_AGE] < 0.0
         or memory[LAST_SWEEPS] > MOST_SWEEPS
@@ -218,17 +218,17 @@ def solve_coupled(ws: Any, ms: Any, t: float, h: float) -> int:
         or (other_step and memory[SWEEP_RATE] > STIFF_RATE)
         or simple
     )
-    guess = best_guess(ws, ms, h)
+    guess = best_guess(workspace, method, h)
     for attempt in range(3):
         if attempt == 1 and fresh:
             continue
-        guess_stages(ws, ms, t, h, AT_REST if attempt == 2 else guess)
+        guess_stages(workspace, method, t, h, AT_REST if attempt == 2 else guess)
         if attempt > 0 or fresh:
-            status = _refactor(ws, ms, t, h, simple)
+            status = _refactor(workspace, method, t, h, simple)
             if status != OK:
                 return status
         rate[FACTOR_AGE] += stages
-        status = _iterate(ws, ms, t, h, simple)
+        status = _iterate(workspace, method, t, h, simple)
         if status == OK or status == REANALYZE:
             break
     return status

@@ -25,9 +25,9 @@ MODIFIED = 0  # parameter: 1 for MEBDF
 
 
 @internal
-def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
+def _coefficients(method: Any, h: float, k: int, table: Any) -> None:
     """All coefficients of the step, renewed when the grid has changed."""
-    if not nodes(ms, h, k + 1, table[NODES]):
+    if not nodes(method, h, k + 1, table[NODES]):
         return
     s = table[NODES]
     bdf_coefficients(s, k, table[BDF])
@@ -42,63 +42,67 @@ def _coefficients(ms: Any, h: float, k: int, table: Any) -> None:
 
 
 @internal
-def ebdf_step(ws: Any, ms: Any, h: float) -> int:
-    k, n = int(vec(ms.choice, CHOICE_SIZE)[K]), ws.n_ext
-    table = weight_rows(ms)
-    _coefficients(ms, h, k, table)
-    t_new = history_time(ms, 0) + h
-    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
-    bar_q, bar_v, bar_a = vec(ws.base_q, n), vec(ws.base_v, n), vec(ws.base_a, n)
-    bar_lam = mat(ws.stage_a, 8, n + ws.m_ext)[0]
+def ebdf_step(workspace: Any, method: Any, h: float) -> int:
+    k, n = int(vec(method.choice, CHOICE_SIZE)[K]), workspace.n_ext
+    table = weight_rows(method)
+    _coefficients(method, h, k, table)
+    t_new = history_time(method, 0) + h
+    q, v, a, lam = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
+    bar_q, bar_v, bar_a = vec(workspace.base_q, n), vec(workspace.base_v, n), vec(workspace.base_a, n)
+    bar_lam = mat(workspace.stage_a, 8, n + workspace.m_ext)[0]
 
-    status = bdf_stage(ws, ms, h, k, table[BDF], table[EXTRAPOLATION])
+    status = bdf_stage(workspace, method, h, k, table[BDF], table[EXTRAPOLATION])
     if status != OK:
         return status
     for i in range(n):
         bar_q[i], bar_v[i], bar_a[i] = q[i], v[i], a[i]
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         bar_lam[i] = lam[i]
 
     coefficients, extrapolation = table[ADVANCED], table[ADVANCED_EXTRAPOLATION]
-    clear(ws.q_star, n)
-    clear(ws.v_star, n)
-    for i in range(ws.n):
+    clear(workspace.q_star, n)
+    clear(workspace.v_star, n)
+    for i in range(workspace.n):
         a[i] = extrapolation[0] * bar_a[i]
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = extrapolation[0] * bar_lam[i]
     c_v = h * coefficients[k]
-    combine_stars(ws, ms, bar_q, bar_v, coefficients[1:], 0, k - 1, c_v)
-    predict(ws, ms, extrapolation[1:], 0, k)
-    status = finish_stage(ws, t_new + h, c_v)
+    combine_stars(workspace, method, bar_q, bar_v, coefficients[1:], 0, k - 1, c_v)
+    predict(workspace, method, extrapolation[1:], 0, k)
+    status = finish_stage(workspace, t_new + h, c_v)
     if status != OK:
         return status
 
     coefficients = table[EXTENDED]
     ahead = h * coefficients[k + 1]
-    own = table[BDF][k] if vec(ms.parameters, 8)[MODIFIED] != 0.0 else coefficients[k]
+    own = table[BDF][k] if vec(method.parameters, 8)[MODIFIED] != 0.0 else coefficients[k]
     beside = h * (coefficients[k] - own)
     for i in range(n):
         q_star[i] = ahead * v[i] + beside * bar_v[i]
         v_star[i] = ahead * a[i] + beside * bar_a[i]
-    for i in range(ws.n):
+    for i in range(workspace.n):
         a[i] = bar_a[i]
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = bar_lam[i]
     c_v = h * own
-    newest = history_row(ws, ms, 0)
-    combine_stars(ws, ms, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
-    status = finish_stage(ws, t_new, c_v)
+    newest = history_row(workspace, method, 0)
+    combine_stars(workspace, method, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
+    status = finish_stage(workspace, t_new, c_v)
     if status != OK:
         return status
-    for i in range(ws.n):
+    for i in range(workspace.n):
         bar_q[i] -= q[i]
         bar_v[i] -= v[i]
-    weight_v = vec(ws.weight_v, n)
+    weight_v = vec(workspace.weight_v, n)
     of_work = 0.0
-    for i in range(n - ws.n_work, n):
+    for i in range(n - workspace.n_work, n):
         of_work = max(of_work, abs(bar_v[i] - v[i]) / weight_v[i])
-    error = vec(ms.error, 2)
-    error[0] = max(of_work, weighted_norm(bar_q, vec(ws.weight_q, n), ws.n), weighted_norm(bar_v, weight_v, ws.n))
+    error = vec(method.error, 2)
+    error[0] = max(
+        of_work,
+        weighted_norm(bar_q, vec(workspace.weight_q, n), workspace.n),
+        weighted_norm(bar_v, weight_v, workspace.n),
+    )
     error[1] = k
     return OK

@@ -60,21 +60,21 @@ def _norm(stages: Any, weight: Any, first: int, last: int, h: float, scheme: int
 
 
 @internal
-def explicit_step(ws: Any, ms: Any, h: float, scheme: int, reuse: bool) -> int:
+def explicit_step(workspace: Any, method: Any, h: float, scheme: int, reuse: bool) -> int:
     """One step from the newest row; `reuse`: its accelerations are those of the first stage.
 
     Each stage's accelerations come from the stage function, which reads alpha and beta in `control`.
     """
-    n = ws.n_ext
-    row = history_row(ws, ms, 0)
-    t = history_time(ms, 0)
-    stage_v, stage_a = mat(ws.stage_v, MOST_STAGES, n), mat(ws.stage_a, MOST_STAGES, n)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
-    v, a, lam = vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    first_work = n - ws.n_work
+    n = workspace.n_ext
+    row = history_row(workspace, method, 0)
+    t = history_time(method, 0)
+    stage_v, stage_a = mat(workspace.stage_v, MOST_STAGES, n), mat(workspace.stage_a, MOST_STAGES, n)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
+    v, a, lam = vec(workspace.v, n), vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    first_work = n - workspace.n_work
     for i in range(n):
         a[i] = row[2 * n + i]
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = row[4 * n + i]
     for s in range(LAST[scheme] + 1):
         for i in range(n):
@@ -85,21 +85,24 @@ def explicit_step(ws: Any, ms: Any, h: float, scheme: int, reuse: bool) -> int:
             q_star[i] = row[i] + h * p_q
             v_star[i] = row[n + i] + h * p_v
         if s > 0 or not reuse:
-            status = call_stage(ws.stage_function, ws, t + C[scheme, s] * h, 0.0, 0.0)
+            status = call_stage(workspace.stage_function, workspace, t + C[scheme, s] * h, 0.0, 0.0)
             if status != OK:
                 return status
-            evaluate_power(ws)
+            evaluate_power(workspace)
         for i in range(n):
             stage_v[s, i] = v_star[i]
             stage_a[s, i] = a[i]
     for i in range(first_work, n):
         v[i] = v_star[i]
-    evaluate_residuals(ws)
-    weight_v = vec(ws.weight_v, n)
-    norm = max(_norm(stage_v, vec(ws.weight_q, n), 0, ws.n, h, scheme), _norm(stage_a, weight_v, 0, ws.n, h, scheme))
+    evaluate_residuals(workspace)
+    weight_v = vec(workspace.weight_v, n)
+    norm = max(
+        _norm(stage_v, vec(workspace.weight_q, n), 0, workspace.n, h, scheme),
+        _norm(stage_a, weight_v, 0, workspace.n, h, scheme),
+    )
     for i in range(first_work, n):
         norm = max(norm, _norm(stage_a, weight_v, i, i + 1, h, scheme))
-    error, aux = vec(ms.error, 2), vec(ws.aux, n)
+    error, aux = vec(method.error, 2), vec(workspace.aux, n)
     error[0], error[1] = norm, ESTIMATE_ORDER[scheme]
     for i in range(n):
         aux[i] = a[i]

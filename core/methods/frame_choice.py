@@ -43,75 +43,75 @@ def _acceleration(row: Any, n: int, i: int) -> Any:
 
 
 @internal
-def _difference(ms: Any, rows: int, second: Any) -> float:
+def _difference(method: Any, rows: int, second: Any) -> float:
     """Square of the divided difference of second derivatives at the newest rows, one in each row of `second`."""
     total = 0.0
-    t, before = history_time(ms, 0), history_time(ms, 1) if rows > 1 else 0.0
+    t, before = history_time(method, 0), history_time(method, 1) if rows > 1 else 0.0
     for j in range(4):
         found = second[0, j]
         if rows > 1:
             found = (found - second[1, j]) / (t - before)
         if rows > 2:
-            oldest = history_time(ms, 2)
+            oldest = history_time(method, 2)
             found = (found - (second[1, j] - second[2, j]) / (before - oldest)) / (t - oldest)
         total += found * found
     return total
 
 
 @internal
-def _roughness(ws: Any, ms: Any, spin: Any, i: int, rows: int) -> float:
+def _roughness(workspace: Any, method: Any, spin: Any, i: int, rows: int) -> float:
     """How much accelerations differ in this frame; `_difference` of the newest rows there."""
-    n, q, v = ws.n_ext, vec(ws.scratch, 4), vec(ws.scratch + 4 * 8, 4)
-    second = mat(ws.scratch + 8 * 8, 3, 4)
+    n, q, v = workspace.n_ext, vec(workspace.scratch, 4), vec(workspace.scratch + 4 * 8, 4)
+    second = mat(workspace.scratch + 8 * 8, 3, 4)
     for back in range(rows):
-        row = history_row(ws, ms, back)
+        row = history_row(workspace, method, back)
         put_four(q, 0, four_of(row, i))
         put_four(v, 0, four_of(row, n + i))
         put_four(second[back], 0, four_of(row, 2 * n + i))
-        enter(spin, history_time(ms, back), q, v, second[back], 0)
-    return _difference(ms, rows, second)
+        enter(spin, history_time(method, back), q, v, second[back], 0)
+    return _difference(method, rows, second)
 
 
 @internal
-def _precession(ws: Any, ms: Any, i: int) -> Any:
+def _precession(workspace: Any, method: Any, i: int) -> Any:
     """Half the angular velocity of a regular precession: angular accelerations turn with it from row to row."""
-    now = _acceleration(history_row(ws, ms, 0), ws.n_ext, i)
-    before = _acceleration(history_row(ws, ms, 1), ws.n_ext, i)
+    now = _acceleration(history_row(workspace, method, 0), workspace.n_ext, i)
+    before = _acceleration(history_row(workspace, method, 1), workspace.n_ext, i)
     axis = _cross(before, now)
     size = np.sqrt(_dot(axis, axis))
     if size == 0.0:
         return 0.0, 0.0, 0.0
-    part = 0.5 * np.arctan2(size, _dot(before, now)) / (size * (history_time(ms, 0) - history_time(ms, 1)))
+    part = 0.5 * np.arctan2(size, _dot(before, now)) / (size * (history_time(method, 0) - history_time(method, 1)))
     return part * axis[0], part * axis[1], part * axis[2]
 
 
 @internal
-def choose_frame(ws: Any, ms: Any, spin: Any, i: int, t: float) -> bool:
+def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bool:
     """Whether a frame makes the motion of a body until t smoother, and which: its rates in `spin`."""
-    n, row, at = ws.n_ext, history_row(ws, ms, 0), history_time(ms, 0)
+    n, row, at = workspace.n_ext, history_row(workspace, method, 0), history_time(method, 0)
     # of the newest step while it is looked at which formula is to follow
-    h = t - at if t > at else at - history_time(ms, 1)
+    h = t - at if t > at else at - history_time(method, 1)
     p = four_of(row, i)
     w = space_rate(p, four_of(row, n + i))
     size = h * np.sqrt(_dot(w, w))
-    order = max(vec(ms.choice, CHOICE_SIZE)[K], 2.0)
+    order = max(vec(method.choice, CHOICE_SIZE)[K], 2.0)
     if 2.0 * size > MOST_TURN or size ** (order + 1.0) < NEGLIGIBLE:
         return False
-    rows = min(rows_available(ms), 3)
-    second = mat(ws.scratch, 3, 4)
+    rows = min(rows_available(method), 3)
+    second = mat(workspace.scratch, 3, 4)
     for back in range(rows):
-        put_four(second[back], 0, four_of(history_row(ws, ms, back), 2 * n + i))
-    most = SMOOTHER * SMOOTHER * _difference(ms, rows, second)
+        put_four(second[back], 0, four_of(history_row(workspace, method, back), 2 * n + i))
+    most = SMOOTHER * SMOOTHER * _difference(method, rows, second)
     none = (0.0, 0.0, 0.0)
     set_rates(spin, w, none, t)
-    own = _roughness(ws, ms, spin, i, rows)
+    own = _roughness(workspace, method, spin, i, rows)
     if rows > 1:
-        precession = _precession(ws, ms, i)
+        precession = _precession(workspace, method, i)
         rest = (0.0, w[0] - precession[0], w[1] - precession[1], w[2] - precession[2])
         s = product(product((p[0], -p[1], -p[2], -p[3]), rest), p)
         # the norm is one to rounding
         set_rates(spin, precession, (s[1], s[2], s[3]), t)
-        if 2.0 * h * spin[RATES + 1] <= MOST_TURN and _roughness(ws, ms, spin, i, rows) < min(own, most):
+        if 2.0 * h * spin[RATES + 1] <= MOST_TURN and _roughness(workspace, method, spin, i, rows) < min(own, most):
             return True
         set_rates(spin, w, none, t)
     return own < most

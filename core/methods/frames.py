@@ -6,25 +6,8 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..stage.corotating import (
-    POINT,
-    RATES,
-    enter,
-    four_of,
-    plus_times,
-    put_four,
-    rotation_of,
-    times_function,
-)
-from ..state.method_records import (
-    CARRIES,
-    CHOICE_SIZE,
-    ESTIMATE,
-    NEXT_K,
-    NEXT_NORM,
-    RING_SIZE,
-    call_step,
-)
+from ..stage.corotating import POINT, RATES, enter, four_of, plus_times, put_four, rotation_of, times_function
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, RING_SIZE, call_step
 from ..state.workspace_records import (
     CONTROL_SIZE,
     EXACTNESS,
@@ -51,35 +34,42 @@ iterations leave is large in the dependent parameters, and a turning frame makes
 
 
 @internal
-def _share_weights(ws: Any, i: int) -> None:
+def _share_weights(workspace: Any, i: int) -> None:
     """Error weights of a body's Euler parameters in a frame: those of their mean, as each is in turn."""
-    for weights in (vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)):
+    for weights in (vec(workspace.weight_q, workspace.n_ext), vec(workspace.weight_v, workspace.n_ext)):
         mean = 0.25 * (weights[i] + weights[i + 1] + weights[i + 2] + weights[i + 3])
         put_four(weights, i, (mean, mean, mean, mean))
 
 
 @internal
-def _begin(ws: Any, ms: Any, t: float) -> None:
+def _begin(workspace: Any, method: Any, t: float) -> None:
     """Choose the frames until t, the end of the step, and put the history that is in them in its place, if there are
     some."""
-    n, spins, spinning = ws.n_ext, mat(ws.spin, ws.n_attitudes, SPIN_SIZE), ivec(ws.spinning, ws.n_attitudes)
+    n, spins, spinning = (
+        workspace.n_ext,
+        mat(workspace.spin, workspace.n_attitudes, SPIN_SIZE),
+        ivec(workspace.spinning, workspace.n_attitudes),
+    )
     count = 0
-    for k in range(ws.n_attitudes):
-        i = ivec(ws.attitudes, ws.n_attitudes)[k]
-        if choose_frame(ws, ms, spins[count], i, t):
+    for k in range(workspace.n_attitudes):
+        i = ivec(workspace.attitudes, workspace.n_attitudes)[k]
+        if choose_frame(workspace, method, spins[count], i, t):
             spinning[count] = i
             count += 1
-            _share_weights(ws, i)
-    ws.n_spins = count
+            _share_weights(workspace, i)
+    workspace.n_spins = count
     if count == 0:
         return
-    rows, carries = mat(ws.turned, ms.capacity, ws.row_length), vec(ms.parameters, 8)[CARRIES] != 0.0
-    for back in range(ivec(ms.ring, RING_SIZE)[1]):
-        row, to = history_row(ws, ms, back), rows[row_index(ms, back)]
-        for i in range(ws.row_length):
+    rows, carries = (
+        mat(workspace.turned, method.capacity, workspace.row_length),
+        vec(method.parameters, 8)[CARRIES] != 0.0,
+    )
+    for back in range(ivec(method.ring, RING_SIZE)[1]):
+        row, to = history_row(workspace, method, back), rows[row_index(method, back)]
+        for i in range(workspace.row_length):
             to[i] = row[i]
         q, v, a, aux = to[:n], to[n : 2 * n], to[2 * n : 3 * n], to[3 * n : 4 * n]
-        at = history_time(ms, back)
+        at = history_time(method, back)
         for k in range(count):
             i = spinning[k]
             # what a formula carries turns as accelerations do
@@ -88,23 +78,23 @@ def _begin(ws: Any, ms: Any, t: float) -> None:
             if back == 0 and carries:
                 own = times_function(spins[k], rotation_of(spins[k], t - at), carried)
                 put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
-    ms.history, ws.turned = ws.turned, ms.history
+    method.history, workspace.turned = workspace.turned, method.history
 
 
 @internal
-def _end(ws: Any, ms: Any, done: bool) -> None:
+def _end(workspace: Any, method: Any, done: bool) -> None:
     """The history in space again, and, where the step is `done`, the workspace's point."""
-    n, count = ws.n_ext, ws.n_spins
-    ws.n_spins = 0
+    n, count = workspace.n_ext, workspace.n_spins
+    workspace.n_spins = 0
     if count == 0:
         return
-    ms.history, ws.turned = ws.turned, ms.history
+    method.history, workspace.turned = workspace.turned, method.history
     if not done:
         return
-    q, v, a, aux = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.aux, n)
+    q, v, a, aux = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.aux, n)
     for k in range(count):
-        i, spin = ivec(ws.spinning, count)[k], mat(ws.spin, count, SPIN_SIZE)[k]
-        if vec(ms.parameters, 8)[CARRIES] != 0.0:
+        i, spin = ivec(workspace.spinning, count)[k], mat(workspace.spin, count, SPIN_SIZE)[k]
+        if vec(method.parameters, 8)[CARRIES] != 0.0:
             carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
             put_four(aux, i, plus_times(four_of(spin, POINT + 8), carried, 1.0))
         put_four(q, i, four_of(spin, POINT))
@@ -113,23 +103,23 @@ def _end(ws: Any, ms: Any, done: bool) -> None:
 
 
 @internal
-def _fastest(ws: Any) -> float:
+def _fastest(workspace: Any) -> float:
     """Rate of the frame that turns fastest, rad/s."""
     rate = 0.0
-    for k in range(ws.n_spins):
-        rate = max(rate, 2.0 * mat(ws.spin, ws.n_spins, SPIN_SIZE)[k, RATES + 1])
+    for k in range(workspace.n_spins):
+        rate = max(rate, 2.0 * mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k, RATES + 1])
     return rate
 
 
 @internal
-def _partition_ends(ws: Any, h: float) -> bool:
+def _partition_ends(workspace: Any, h: float) -> bool:
     """Whether the Euler parameter that follows from the norm, or the one that the others follow from (as with a hinge),
     passes zero within two steps of size h, while another one does not."""
-    dependent = ivec(ws.dependent, ws.m_act)
-    for k in range(ws.n_spins):
-        i, spin = ivec(ws.spinning, ws.n_spins)[k], mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
+    dependent = ivec(workspace.dependent, workspace.m_act)
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
         count, which = 0, 0
-        for d in range(ws.m_act):
+        for d in range(workspace.m_act):
             if 0 <= dependent[d] - i < 4:
                 count += 1
                 which += dependent[d] - i
@@ -159,27 +149,27 @@ def _turn_error(h: float, rate: float, order: float) -> float:
 
 
 @internal
-def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
+def step_in_frames(workspace: Any, method: Any, step: int, h: float) -> int:
     """The step at this address from the newest row by h, with attitudes in turning frames where these are a help.
 
     Fixed steps have none: frames come and go with the motion and the size of the steps, and errors would not fall with
     these as they do for one formula.
     """
-    if ws.n_attitudes == 0 or vec(ms.parameters, 8)[ESTIMATE] == 0.0:
-        return call_step(step, ws, ms, h)
-    error, control = vec(ms.error, 2), vec(ws.control, CONTROL_SIZE)
+    if workspace.n_attitudes == 0 or vec(method.parameters, 8)[ESTIMATE] == 0.0:
+        return call_step(step, workspace, method, h)
+    error, control = vec(method.error, 2), vec(workspace.control, CONTROL_SIZE)
     newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
     finer = FINER
     while True:
-        _begin(ws, ms, history_time(ms, 0) + h)
-        fastest = _fastest(ws)
+        _begin(workspace, method, history_time(method, 0) + h)
+        fastest = _fastest(workspace)
         if h * fastest <= FAST * LARGEST_TURN:
             finer = 1.0
         control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
-        status = call_step(step, ws, ms, h)
-        if status == OK and _partition_ends(ws, h):
-            vec(ws.rate, RATE_SIZE)[SENSITIVITY] = np.inf
-        _end(ws, ms, status == OK)
+        status = call_step(step, workspace, method, h)
+        if status == OK and _partition_ends(workspace, h):
+            vec(workspace.rate, RATE_SIZE)[SENSITIVITY] = np.inf
+        _end(workspace, method, status == OK)
         if status == OK or status == REANALYZE or finer == 1.0:
             break
         # rounding does not let the loops come so far: a dependent parameter passes zero
@@ -190,14 +180,14 @@ def step_in_frames(ws: Any, ms: Any, step: int, h: float) -> int:
 
 
 @internal
-def select_in_frames(ws: Any, ms: Any, select: int, h: float) -> bool:
+def select_in_frames(workspace: Any, method: Any, select: int, h: float) -> bool:
     """Whether the function at this address proposes other steps k after a step of size h. It sees the same history as
     a step does."""
-    choice = vec(ms.choice, CHOICE_SIZE)
-    _begin(ws, ms, history_time(ms, 0))
-    fastest = _fastest(ws)
-    status = call_step(select, ws, ms, h)
-    _end(ws, ms, False)
+    choice = vec(method.choice, CHOICE_SIZE)
+    _begin(workspace, method, history_time(method, 0))
+    fastest = _fastest(workspace)
+    status = call_step(select, workspace, method, h)
+    _end(workspace, method, False)
     if status != OK or choice[NEXT_K] == 0.0:
         return False
     choice[NEXT_NORM] = max(choice[NEXT_NORM], _turn_error(h, fastest, choice[NEXT_K]))

@@ -20,8 +20,8 @@ h^3 a' [(am - af)/2 + beta], the solution h^3 a'/6. Beside it that of the veloci
 
 from typing import Any
 
-from ..assembly.compatibility import solve_equations
 from ..assembly.evaluate import evaluate_power, evaluate_residuals
+from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
@@ -43,90 +43,92 @@ def _error_constant(parameters: Any) -> float:
 
 
 @internal
-def _advance(ws: Any, ms: Any, h: float) -> int:
+def _advance(workspace: Any, method: Any, h: float) -> int:
     """One stage from the newest row, with A_n in `base_a` and what v_n is changed by in `base_v`."""
-    parameters = vec(ms.parameters, 8)
+    parameters = vec(method.parameters, 8)
     am, af, beta, gamma = parameters[AM], parameters[AF], parameters[BETA], parameters[GAMMA]
-    n = ws.n_ext
-    row, algorithmic, shift = history_row(ws, ms, 0), vec(ws.base_a, n), vec(ws.base_v, n)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    n = workspace.n_ext
+    row, algorithmic, shift = history_row(workspace, method, 0), vec(workspace.base_a, n), vec(workspace.base_v, n)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
     of_true = (1.0 - af) / (1.0 - am)
-    for i in range(ws.n):
+    for i in range(workspace.n):
         known = (af * row[2 * n + i] - am * algorithmic[i]) / (1.0 - am)
         v = row[n + i] + shift[i]
         q_star[i] = row[i] + h * v + h * h * ((0.5 - beta) * algorithmic[i] + beta * known)
         v_star[i] = v + h * ((1.0 - gamma) * algorithmic[i] + gamma * known)
-    predict_linearly(ws, ms, h, 1.0)
-    return call_stage(ws.stage_function, ws, history_time(ms, 0) + h, of_true * beta * h * h, of_true * gamma * h)
+    predict_linearly(workspace, method, h, 1.0)
+    return call_stage(
+        workspace.stage_function, workspace, history_time(method, 0) + h, of_true * beta * h * h, of_true * gamma * h
+    )
 
 
 @internal
-def _find_algorithmic(ws: Any, ms: Any, h: float) -> int:
+def _find_algorithmic(workspace: Any, method: Any, h: float) -> int:
     """A_n of the newest row for a step of size h into `base_a`, the change of v_n into `base_v`."""
-    parameters = vec(ms.parameters, 8)
-    n = ws.n_ext
-    row, algorithmic, a = history_row(ws, ms, 0), vec(ws.base_a, n), vec(ws.a, n)
-    v_shift = vec(ws.base_v, n)
-    for i in range(ws.n):
+    parameters = vec(method.parameters, 8)
+    n = workspace.n_ext
+    row, algorithmic, a = history_row(workspace, method, 0), vec(workspace.base_a, n), vec(workspace.a, n)
+    v_shift = vec(workspace.base_v, n)
+    for i in range(workspace.n):
         v_shift[i] = 0.0
-    if rows_available(ms) > 1:
-        ratio = min(h / (history_time(ms, 0) - history_time(ms, 1)), MOST_GROWTH)
-        for i in range(ws.n):
+    if rows_available(method) > 1:
+        ratio = min(h / (history_time(method, 0) - history_time(method, 1)), MOST_GROWTH)
+        for i in range(workspace.n):
             algorithmic[i] = row[2 * n + i] + ratio * (row[3 * n + i] - row[2 * n + i])
         return OK
-    for i in range(ws.n):
+    for i in range(workspace.n):
         algorithmic[i] = row[2 * n + i]
     if parameters[SHIFTED] == 0.0:
         return OK
-    status = _advance(ws, ms, h)
+    status = _advance(workspace, method, h)
     if status != OK:
         return status
-    status = solve_accelerations(ws)
+    status = solve_accelerations(workspace)
     if status != OK:
         return status
-    for i in range(ws.n):
+    for i in range(workspace.n):
         change = a[i] - row[2 * n + i]
         algorithmic[i] += (parameters[AM] - parameters[AF]) * change
         # phidd vanished with a: now it is -C h Phi_q (a(h) - a_0)
         a[i] -= _error_constant(parameters) * h * change
-    if parameters[INDEX] == 3.0 and ws.m_act > 0:
-        evaluate_residuals(ws)
-        rhs, phidd = vec(ws.rhs, ws.n + ws.m_act), vec(ws.phidd, ws.m_ext)
-        active = ivec(ws.active, ws.m_act)
-        for i in range(ws.n):
+    if parameters[INDEX] == 3.0 and workspace.m_act > 0:
+        evaluate_residuals(workspace)
+        rhs, phidd = vec(workspace.rhs, workspace.n + workspace.m_act), vec(workspace.phidd, workspace.m_ext)
+        active = ivec(workspace.active, workspace.m_act)
+        for i in range(workspace.n):
             rhs[i] = 0.0
-        for i in range(ws.m_act):
-            rhs[ws.n + i] = phidd[active[i]]
-        solve_equations(ws, ws.kkt_query)
-        for i in range(ws.n):
+        for i in range(workspace.m_act):
+            rhs[workspace.n + i] = phidd[active[i]]
+        solve_equations(workspace, workspace.kkt_query)
+        for i in range(workspace.n):
             v_shift[i] = rhs[i]
     return OK
 
 
 @internal
-def generalized_alpha_step(ws: Any, ms: Any, h: float) -> int:
-    parameters = vec(ms.parameters, 8)
+def generalized_alpha_step(workspace: Any, method: Any, h: float) -> int:
+    parameters = vec(method.parameters, 8)
     am, af = parameters[AM], parameters[AF]
-    n = ws.n_ext
-    status = _find_algorithmic(ws, ms, h)
+    n = workspace.n_ext
+    status = _find_algorithmic(workspace, method, h)
     if status != OK:
         return status
-    status = _advance(ws, ms, h)
+    status = _advance(workspace, method, h)
     if status != OK:
         return status
-    evaluate_power(ws)
-    row, algorithmic = history_row(ws, ms, 0), vec(ws.base_a, n)
-    finish_work(ws, row, h)
-    a, aux, error = vec(ws.a, n), vec(ws.aux, n), vec(ws.rhs, ws.n)
+    evaluate_power(workspace)
+    row, algorithmic = history_row(workspace, method, 0), vec(workspace.base_a, n)
+    finish_work(workspace, row, h)
+    a, aux, error = vec(workspace.a, n), vec(workspace.aux, n), vec(workspace.rhs, workspace.n)
     factor = _error_constant(parameters) * h * h
-    for i in range(ws.n):
+    for i in range(workspace.n):
         aux[i] = ((1.0 - af) * a[i] + af * row[2 * n + i] - am * algorithmic[i]) / (1.0 - am)
         error[i] = factor * (a[i] - row[2 * n + i])
-    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    vec(ms.error, 2)[0] = norm
-    vec(ms.error, 2)[1] = 2.0
+    norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
+    vec(method.error, 2)[0] = norm
+    vec(method.error, 2)[1] = 2.0
     if parameters[ESTIMATE] == 0.0:
         return OK
-    status, of_velocities = absolute_velocity_error(ws, ms, h, 0.0, parameters[INDEX] == 2.0)
-    vec(ms.error, 2)[0] = max(norm, of_velocities)
+    status, of_velocities = absolute_velocity_error(workspace, method, h, 0.0, parameters[INDEX] == 2.0)
+    vec(method.error, 2)[0] = max(norm, of_velocities)
     return status

@@ -20,12 +20,12 @@ BY_ACCELERATIONS, BY_VELOCITIES, AT_REST = range(3)
 
 
 @internal
-def _weights(ws: Any, ms: Any, first: int, t: float, h: float) -> int:
+def _weights(workspace: Any, method: Any, first: int, t: float, h: float) -> int:
     """Weights in `scratch` that extrapolate rows first, first + 1 ... of the history to t. Returns their number."""
-    nodes, weights = vec(ws.scratch, MOST_ROWS), vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
-    count = min(rows_available(ms) - first, MOST_ROWS)
+    nodes, weights = vec(workspace.scratch, MOST_ROWS), vec(workspace.scratch + 8 * MOST_ROWS, MOST_ROWS)
+    count = min(rows_available(method) - first, MOST_ROWS)
     for j in range(count):
-        nodes[j] = (history_time(ms, first + j) - t) / h
+        nodes[j] = (history_time(method, first + j) - t) / h
     while True:
         extrapolation_weights(nodes, count, weights)
         size = 0.0
@@ -37,20 +37,20 @@ def _weights(ws: Any, ms: Any, first: int, t: float, h: float) -> int:
 
 
 @internal
-def best_guess(ws: Any, ms: Any, h: float) -> int:
+def best_guess(workspace: Any, method: Any, h: float) -> int:
     """Whether velocities or accelerations would have predicted the newest row better: for stiff components, whose
     accelerations are large and noisy, it is the velocities."""
-    if rows_available(ms) < 3:
+    if rows_available(method) < 3:
         return BY_ACCELERATIONS
-    n = ws.n_ext
-    newest = history_row(ws, ms, 0)
-    count = _weights(ws, ms, 1, history_time(ms, 0), h)
-    weights, weight_v = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS), vec(ws.weight_v, n)
+    n = workspace.n_ext
+    newest = history_row(workspace, method, 0)
+    count = _weights(workspace, method, 1, history_time(method, 0), h)
+    weights, weight_v = vec(workspace.scratch + 8 * MOST_ROWS, MOST_ROWS), vec(workspace.weight_v, n)
     of_v, of_a = 0.0, 0.0
-    for l in range(ws.n):
+    for l in range(workspace.n):
         v, a = newest[n + l], newest[2 * n + l]
         for j in range(count):
-            old = history_row(ws, ms, 1 + j)
+            old = history_row(workspace, method, 1 + j)
             v -= weights[j] * old[n + l]
             a -= weights[j] * old[2 * n + l]
         of_v += (v / weight_v[l]) ** 2
@@ -59,34 +59,34 @@ def best_guess(ws: Any, ms: Any, h: float) -> int:
 
 
 @internal
-def _predict(ws: Any, ms: Any, t: float, h: float, guess: int) -> bool:
+def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> bool:
     """Accelerations and multipliers of the stages by extrapolation through the history; q and v that belong to them.
 
     BY_VELOCITIES: a = A^-1 (V - v_n) / h with extrapolated velocities V of the stages. AT_REST: a = 0, so that the
     stages stay near the newest row whatever its accelerations are. Returns whether the guess is plausible.
     """
-    n = ws.n_ext
-    stages = stage_count(ms)
-    table, rows = weight_rows(ms), stage_rows(ws)
-    weights = vec(ws.scratch + 8 * MOST_ROWS, MOST_ROWS)
-    newest = history_row(ws, ms, 0)
-    scale, plausible = vec(ws.scale, ws.n), True
+    n = workspace.n_ext
+    stages = stage_count(method)
+    table, rows = weight_rows(method), stage_rows(workspace)
+    weights = vec(workspace.scratch + 8 * MOST_ROWS, MOST_ROWS)
+    newest = history_row(workspace, method, 0)
+    scale, plausible = vec(workspace.scale, workspace.n), True
     source = n if guess == BY_VELOCITIES else 2 * n
     for i in range(stages):
         row = rows[i]
-        count = _weights(ws, ms, 0, t + table[VECTORS, NODES + i] * h, h)
-        for l in range(ws.n):
+        count = _weights(workspace, method, 0, t + table[VECTORS, NODES + i] * h, h)
+        for l in range(workspace.n):
             found = 0.0
             if guess != AT_REST:
                 for j in range(count):
-                    found += weights[j] * history_row(ws, ms, j)[source + l]
+                    found += weights[j] * history_row(workspace, method, j)[source + l]
             row[3 * n + l] = found
-        for l in range(ws.m_ext):
+        for l in range(workspace.m_ext):
             found = 0.0
             for j in range(count):
-                found += weights[j] * history_row(ws, ms, j)[4 * n + l]
+                found += weights[j] * history_row(workspace, method, j)[4 * n + l]
             row[4 * n + l] = found
-    for l in range(ws.n):
+    for l in range(workspace.n):
         for i in range(stages):
             a = rows[i, 3 * n + l]
             if guess == BY_VELOCITIES:
@@ -108,7 +108,7 @@ def _predict(ws: Any, ms: Any, t: float, h: float, guess: int) -> bool:
 
 
 @internal
-def guess_stages(ws: Any, ms: Any, t: float, h: float, guess: int) -> None:
+def guess_stages(workspace: Any, method: Any, t: float, h: float, guess: int) -> None:
     """Starting values of all stages, by `guess` if that is plausible."""
-    if not _predict(ws, ms, t, h, guess):
-        _predict(ws, ms, t, h, AT_REST)
+    if not _predict(workspace, method, t, h, guess):
+        _predict(workspace, method, t, h, AT_REST)

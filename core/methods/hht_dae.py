@@ -40,100 +40,102 @@ ALPHA, BETA, GAMMA, INDEX = 0, 1, 2, 3
 
 
 @internal
-def carry_force(ws: Any, ms: Any, factor: float) -> None:
+def carry_force(workspace: Any, method: Any, factor: float) -> None:
     """offset = factor F_n, with F_n = Phi_q^T lambda - Q at the newest row."""
-    n = ws.n_ext
-    offset = vec(ws.offset, n)
+    n = workspace.n_ext
+    offset = vec(workspace.offset, n)
     if factor == 0.0:
-        for i in range(ws.n):
+        for i in range(workspace.n):
             offset[i] = 0.0
         return
-    recall(ws, ms, 0)
-    a, r = vec(ws.a, n), vec(ws.r, n)
-    for i in range(ws.n):
+    recall(workspace, method, 0)
+    a, r = vec(workspace.a, n), vec(workspace.r, n)
+    for i in range(workspace.n):
         a[i] = 0.0
-    evaluate_residuals(ws)
-    for i in range(ws.n):
+    evaluate_residuals(workspace)
+    for i in range(workspace.n):
         offset[i] = factor * r[i]
 
 
 @internal
-def carry_change_of_mass(ws: Any, ms: Any, h: float, alpha: float, ahead: float) -> None:
+def carry_change_of_mass(workspace: Any, method: Any, h: float, alpha: float, ahead: float) -> None:
     """offset -= alpha (M(q_n + h v_n + h^2 a_n / 2) - M(q_n)) b, with b = a_n / (1 + alpha), a_n moved by `ahead`.
 
     M b is what the residuals with b are more than those without; the power of h that is left out is the third.
     """
-    n = ws.n_ext
-    row, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
-    offset, q, a, r = vec(ws.offset, n), vec(ws.q, n), vec(ws.a, n), vec(ws.r, n)
+    n = workspace.n_ext
+    row, older = history_row(workspace, method, 0), history_row(workspace, method, 1)
+    offset, q, a, r = vec(workspace.offset, n), vec(workspace.q, n), vec(workspace.a, n), vec(workspace.r, n)
     for k in range(4):
         at_end, with_mass = k // 2 == 1, k % 2 == 1
-        recall(ws, ms, 0)
-        for i in range(ws.n):
+        recall(workspace, method, 0)
+        for i in range(workspace.n):
             a_n = row[2 * n + i] + ahead * (row[2 * n + i] - older[2 * n + i])
             a[i] = a_n / (1.0 + alpha) if with_mass else 0.0
             if at_end:
                 q[i] += h * (row[n + i] + 0.5 * h * a_n)
-        evaluate_residuals(ws)
+        evaluate_residuals(workspace)
         sign = alpha if at_end == with_mass else -alpha
-        for i in range(ws.n):
+        for i in range(workspace.n):
             offset[i] -= sign * r[i]
 
 
 @inlined
-def _change(ms: Any, h: float) -> float:
+def _change(method: Any, h: float) -> float:
     """By how much the step has changed, s."""
-    last = history_time(ms, 0) - history_time(ms, 1)
+    last = history_time(method, 0) - history_time(method, 1)
     return min(h, MOST_GROWTH * last) - last
 
 
 @inlined
-def _between(ms: Any, alpha: float) -> float:
+def _between(method: Any, alpha: float) -> float:
     """Time between the newest two accelerations, s; that of the row that begins a history stands for its own time."""
-    last = history_time(ms, 0) - history_time(ms, 1)
-    if rows_available(ms) > 2:
-        return last + alpha * (last - history_time(ms, 1) + history_time(ms, 2))
+    last = history_time(method, 0) - history_time(method, 1)
+    if rows_available(method) > 2:
+        return last + alpha * (last - history_time(method, 1) + history_time(method, 2))
     return last + alpha * last
 
 
 @internal
-def hht_dae_step(ws: Any, ms: Any, h: float) -> int:
-    parameters = vec(ms.parameters, 8)
+def hht_dae_step(workspace: Any, method: Any, h: float) -> int:
+    parameters = vec(method.parameters, 8)
     alpha, beta, gamma = parameters[ALPHA], parameters[BETA], parameters[GAMMA]
     share = 1.0 + alpha
-    n = ws.n_ext
-    row = history_row(ws, ms, 0)
-    carry_force(ws, ms, alpha / share)
-    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
-    older, ahead = history_row(ws, ms, 1), 0.0
-    if rows_available(ms) > 1:
-        ahead = alpha * _change(ms, h) / _between(ms, alpha)
+    n = workspace.n_ext
+    row = history_row(workspace, method, 0)
+    carry_force(workspace, method, alpha / share)
+    q_star, v_star, a = vec(workspace.q_star, n), vec(workspace.v_star, n), vec(workspace.a, n)
+    older, ahead = history_row(workspace, method, 1), 0.0
+    if rows_available(method) > 1:
+        ahead = alpha * _change(method, h) / _between(method, alpha)
     if alpha != 0.0:
-        carry_change_of_mass(ws, ms, h, alpha, ahead)
+        carry_change_of_mass(workspace, method, h, alpha, ahead)
     for i in range(n):
         a_n = row[2 * n + i] + ahead * (row[2 * n + i] - older[2 * n + i])
         q_star[i] = row[i] + h * row[n + i] + h * h * (0.5 - beta) * a_n
         v_star[i] = row[n + i] + h * (1.0 - gamma) * a_n
-    predict_linearly(ws, ms, h, share)
-    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, share * beta * h * h, share * gamma * h)
+    predict_linearly(workspace, method, h, share)
+    status = call_stage(
+        workspace.stage_function, workspace, history_time(method, 0) + h, share * beta * h * h, share * gamma * h
+    )
     if status != OK:
         return status
-    for i in range(ws.n):
+    for i in range(workspace.n):
         a[i] *= share
-    evaluate_power(ws)
-    finish_work(ws, row, h)
+    evaluate_power(workspace)
+    finish_work(workspace, row, h)
     status, of_velocities = OK, 0.0
     if parameters[ESTIMATE] != 0.0:
-        status, of_velocities = absolute_velocity_error(ws, ms, h, alpha, parameters[INDEX] == 2.0)
+        status, of_velocities = absolute_velocity_error(workspace, method, h, alpha, parameters[INDEX] == 2.0)
     elif alpha != 0.0:
-        evaluate_residuals(ws)
-    error, aux = vec(ws.rhs, ws.n), vec(ws.aux, n)
+        evaluate_residuals(workspace)
+    error, aux = vec(workspace.rhs, workspace.n), vec(workspace.aux, n)
     factor = (beta - 1.0 / (6.0 * share)) * h * h
-    for i in range(ws.n):
+    for i in range(workspace.n):
         error[i] = factor * (a[i] - row[2 * n + i])
     for i in range(n):
         aux[i] = a[i]
-    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    vec(ms.error, 2)[0] = max(norm, of_velocities)
-    vec(ms.error, 2)[1] = 2.0
+    norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
+    vec(method.error, 2)[0] = max(norm, of_velocities)
+    vec(method.error, 2)[1] = 2.0
     return status

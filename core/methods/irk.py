@@ -31,43 +31,43 @@ ERROR_ORDER = 2
 
 
 @internal
-def _rates_of_work(ws: Any, ms: Any, t: float, h: float) -> None:
+def _rates_of_work(workspace: Any, method: Any, t: float, h: float) -> None:
     """Rates of the work accounts at the stages, into their rows."""
-    if ws.n_work == 0:
+    if workspace.n_work == 0:
         return
-    n = ws.n_ext
-    a, rows = vec(ws.a, n), stage_rows(ws)
-    for i in range(stage_count(ms)):
-        load_stage(ws, ms, i, t, h)
-        evaluate_power(ws)
-        for l in range(n - ws.n_work, n):
+    n = workspace.n_ext
+    a, rows = vec(workspace.a, n), stage_rows(workspace)
+    for i in range(stage_count(method)):
+        load_stage(workspace, method, i, t, h)
+        evaluate_power(workspace)
+        for l in range(n - workspace.n_work, n):
             rows[i, 2 * n + l] = a[l]
 
 
 @internal
-def _extrapolate_to_end(ws: Any, ms: Any) -> None:
+def _extrapolate_to_end(workspace: Any, method: Any) -> None:
     """a and lambda from the stages to the end of the step."""
-    n = ws.n_ext
-    table, rows = weight_rows(ms), stage_rows(ws)
-    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    stages = stage_count(ms)
-    for l in range(ws.n):
+    n = workspace.n_ext
+    table, rows = weight_rows(method), stage_rows(workspace)
+    a, lam = vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    stages = stage_count(method)
+    for l in range(workspace.n):
         a[l] = 0.0
         for i in range(stages):
             a[l] += table[VECTORS, END + i] * rows[i, 2 * n + l]
-    for l in range(ws.m_ext):
+    for l in range(workspace.m_ext):
         lam[l] = 0.0
         for i in range(stages):
             lam[l] += table[VECTORS, END + i] * rows[i, 4 * n + l]
 
 
 @internal
-def _embedded(ws: Any, ms: Any, t: float, h: float) -> int:
+def _embedded(workspace: Any, method: Any, t: float, h: float) -> int:
     """yhat at t + h, into base_q and base_v."""
-    n = ws.n_ext
-    table, rows, old = weight_rows(ms), stage_rows(ws), history_row(ws, ms, 0)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
-    stages = stage_count(ms)
+    n = workspace.n_ext
+    table, rows, old = weight_rows(method), stage_rows(workspace), history_row(workspace, method, 0)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
+    stages = stage_count(method)
     c_v = h * table[EMBEDDED, GAMMA]
     for l in range(n):
         p_q = table[EMBEDDED, START] * old[n + l]
@@ -77,13 +77,13 @@ def _embedded(ws: Any, ms: Any, t: float, h: float) -> int:
             p_v += table[EMBEDDED, i] * rows[i, 2 * n + l]
         v_star[l] = old[n + l] + h * p_v
         q_star[l] = old[l] + h * p_q + c_v * v_star[l]
-    _extrapolate_to_end(ws, ms)
-    rate = vec(ws.rate, RATE_SIZE)
+    _extrapolate_to_end(workspace, method)
+    rate = vec(workspace.rate, RATE_SIZE)
     # whether the matrices are good enough is for the sweeps to say
     rate[LAST_OUTER], rate[LAST_INNER] = 0.0, 0.0
-    status = finish_stage(ws, t + h, c_v)
-    q, v = vec(ws.q, n), vec(ws.v, n)
-    hat_q, hat_v = vec(ws.base_q, n), vec(ws.base_v, n)
+    status = finish_stage(workspace, t + h, c_v)
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
+    hat_q, hat_v = vec(workspace.base_q, n), vec(workspace.base_v, n)
     for l in range(n):
         hat_q[l] = q[l]
         hat_v[l] = v[l]
@@ -91,86 +91,89 @@ def _embedded(ws: Any, ms: Any, t: float, h: float) -> int:
 
 
 @internal
-def _end(ws: Any, ms: Any, t: float, h: float) -> int:
+def _end(workspace: Any, method: Any, t: float, h: float) -> int:
     """The new point, consistent at all levels."""
-    n = ws.n_ext
-    table, rows, old = weight_rows(ms), stage_rows(ws), history_row(ws, ms, 0)
-    parameters = vec(ms.parameters, 8)
-    stages = stage_count(ms)
-    q, v = vec(ws.q, n), vec(ws.v, n)
+    n = workspace.n_ext
+    table, rows, old = weight_rows(method), stage_rows(workspace), history_row(workspace, method, 0)
+    parameters = vec(method.parameters, 8)
+    stages = stage_count(method)
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
     if parameters[STIFFLY_ACCURATE] == 1.0:
-        load_stage(ws, ms, stages - 1, t, h)
-        evaluate_residuals(ws)
-        status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
+        load_stage(workspace, method, stages - 1, t, h)
+        evaluate_residuals(workspace)
+        status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0)
     else:
-        vec(ws.t, 1)[0] = t + h
-        for l in range(ws.n):
+        vec(workspace.t, 1)[0] = t + h
+        for l in range(workspace.n):
             move_q, move_v = 0.0, 0.0
             for i in range(stages):
                 move_q += table[VECTORS, BA + i] * rows[i, 2 * n + l]
                 move_v += table[VECTORS, B + i] * rows[i, 2 * n + l]
             q[l] = old[l] + h * (old[n + l] + h * move_q)
             v[l] = old[n + l] + h * move_v
-        _extrapolate_to_end(ws, ms)
-        evaluate_residuals(ws)
-        status = inner_loop(ws, ws.lu_d, 1.0, np.inf)
+        _extrapolate_to_end(workspace, method)
+        evaluate_residuals(workspace)
+        status = inner_loop(workspace, workspace.lu_d, 1.0, np.inf)
         if status == OK:
-            status = solve_accelerations(ws)
-            ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    for l in range(n - ws.n_work, n):
+            status = solve_accelerations(workspace)
+            ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    for l in range(n - workspace.n_work, n):
         work = 0.0
         for i in range(stages):
             work += table[VECTORS, B + i] * rows[i, 2 * n + l]
         v[l] = old[n + l] + h * work
-    evaluate_power(ws)
+    evaluate_power(workspace)
     return status
 
 
 @internal
-def _norm(ws: Any, of_q: Any, of_v: Any) -> float:
+def _norm(workspace: Any, of_q: Any, of_v: Any) -> float:
     """Weighted norm of differences of coordinates, velocities and work accounts."""
-    weight_v = vec(ws.weight_v, ws.n_ext)
-    norm = max(weighted_norm(of_q, vec(ws.weight_q, ws.n_ext), ws.n), weighted_norm(of_v, weight_v, ws.n))
-    for l in range(ws.n_ext - ws.n_work, ws.n_ext):
+    weight_v = vec(workspace.weight_v, workspace.n_ext)
+    norm = max(
+        weighted_norm(of_q, vec(workspace.weight_q, workspace.n_ext), workspace.n),
+        weighted_norm(of_v, weight_v, workspace.n),
+    )
+    for l in range(workspace.n_ext - workspace.n_work, workspace.n_ext):
         norm = max(norm, abs(of_v[l]) / weight_v[l])
     return norm
 
 
 @internal
-def _error_of_step(ws: Any, ms: Any, h: float) -> float:
+def _error_of_step(workspace: Any, method: Any, h: float) -> float:
     """Norm of (q, v, work) less yhat; times its ratio to the lower difference where the method has one."""
-    n = ws.n_ext
-    table, rows, stages = weight_rows(ms), stage_rows(ws), stage_count(ms)
-    q, v = vec(ws.q, n), vec(ws.v, n)
-    hat_q, hat_v = vec(ws.base_q, n), vec(ws.base_v, n)
+    n = workspace.n_ext
+    table, rows, stages = weight_rows(method), stage_rows(workspace), stage_count(method)
+    q, v = vec(workspace.q, n), vec(workspace.v, n)
+    hat_q, hat_v = vec(workspace.base_q, n), vec(workspace.base_v, n)
     for l in range(n):
         hat_q[l] -= q[l]
         hat_v[l] -= v[l]
-    distance = _norm(ws, hat_q, hat_v)
+    distance = _norm(workspace, hat_q, hat_v)
     for l in range(n):
         hat_q[l], hat_v[l] = 0.0, 0.0
         for i in range(stages):
             hat_q[l] += h * table[EMBEDDED, LOWER + i] * rows[i, n + l]
             hat_v[l] += h * table[EMBEDDED, LOWER + i] * rows[i, 2 * n + l]
-    lower = _norm(ws, hat_q, hat_v)
+    lower = _norm(workspace, hat_q, hat_v)
     return distance * distance / np.hypot(distance, lower) if distance > 0.0 else distance
 
 
 @internal
-def irk_step(ws: Any, ms: Any, h: float) -> int:
+def irk_step(workspace: Any, method: Any, h: float) -> int:
     """One step with the tableau in the method record; the error estimate only where it is asked for."""
-    parameters, error = vec(ms.parameters, 8), vec(ms.error, 2)
-    t = history_time(ms, 0)
+    parameters, error = vec(method.parameters, 8), vec(method.error, 2)
+    t = history_time(method, 0)
     error[0], error[1] = 0.0, parameters[ERROR_ORDER]
-    status = solve_coupled(ws, ms, t, h)
+    status = solve_coupled(workspace, method, t, h)
     if status != OK:
         return status
-    _rates_of_work(ws, ms, t, h)
+    _rates_of_work(workspace, method, t, h)
     if parameters[ESTIMATE] != 0.0:
-        status = _embedded(ws, ms, t, h)
+        status = _embedded(workspace, method, t, h)
         if status != OK:
             return status
-    status = _end(ws, ms, t, h)
+    status = _end(workspace, method, t, h)
     if status == OK and parameters[ESTIMATE] != 0.0:
-        error[0] = _error_of_step(ws, ms, h)
+        error[0] = _error_of_step(workspace, method, h)
     return status

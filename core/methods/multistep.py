@@ -16,32 +16,34 @@ from .history import history_row, history_time
 
 
 @inlined
-def weight_rows(ms: Any) -> Any:
+def weight_rows(method: Any) -> Any:
     """Table of the coefficients."""
-    return mat(ms.weights, 8, MAX_NODES)
+    return mat(method.weights, 8, MAX_NODES)
 
 
 COUNT_ROW = 7  # of the table of coefficients: for how many nodes it was made
 
 
 @internal
-def nodes(ms: Any, h: float, count: int, out: Any) -> bool:
+def nodes(method: Any, h: float, count: int, out: Any) -> bool:
     """s_j = (t_j - t_new)/h of the newest `count` rows into `out`; True if they differ from what stood there."""
-    t_new = history_time(ms, 0) + h
-    of_table = weight_rows(ms)[COUNT_ROW]
+    t_new = history_time(method, 0) + h
+    of_table = weight_rows(method)[COUNT_ROW]
     changed = of_table[0] != count
     of_table[0] = count
     for j in range(count):
-        if abs((history_time(ms, j) - t_new) / h - out[j]) > 1e-12:
+        if abs((history_time(method, j) - t_new) / h - out[j]) > 1e-12:
             changed = True
     if changed:
         for j in range(count):
-            out[j] = (history_time(ms, j) - t_new) / h
+            out[j] = (history_time(method, j) - t_new) / h
     return changed
 
 
 @internal
-def combine_stars(ws: Any, ms: Any, base_q: Any, base_v: Any, weights: Any, first: int, count: int, c_v: float) -> None:
+def combine_stars(
+    workspace: Any, method: Any, base_q: Any, base_v: Any, weights: Any, first: int, count: int, c_v: float
+) -> None:
     """q*, v* from rows first ... first + count - 1 of the history with `weights`, and from the point (base_q, base_v)
     with what is missing of them to 1; added to what stands there.
 
@@ -49,10 +51,10 @@ def combine_stars(ws: Any, ms: Any, base_q: Any, base_v: Any, weights: Any, firs
     weighted: the rounding of the weights then counts by how far the rows are apart, not by how far from the origin,
     and so does not add up from step to step.
     """
-    n = ws.n_ext
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
+    n = workspace.n_ext
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
     for j in range(count):
-        row = history_row(ws, ms, first + j)
+        row = history_row(workspace, method, first + j)
         w = weights[j]
         for i in range(n):
             q_star[i] += w * (row[i] - base_q[i])
@@ -63,16 +65,16 @@ def combine_stars(ws: Any, ms: Any, base_q: Any, base_v: Any, weights: Any, firs
 
 
 @internal
-def predict(ws: Any, ms: Any, weights: Any, first: int, count: int) -> None:
+def predict(workspace: Any, method: Any, weights: Any, first: int, count: int) -> None:
     """Extrapolate a and lambda through rows of the history, on top of what stands in a and lam."""
-    n = ws.n_ext
-    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
+    n = workspace.n_ext
+    a, lam = vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
     for j in range(count):
-        row = history_row(ws, ms, first + j)
+        row = history_row(workspace, method, first + j)
         w = weights[j]
-        for i in range(ws.n):
+        for i in range(workspace.n):
             a[i] += w * row[2 * n + i]
-        for i in range(ws.m_ext):
+        for i in range(workspace.m_ext):
             lam[i] += w * row[4 * n + i]
 
 
@@ -85,70 +87,72 @@ def clear(address: int, n: int) -> None:
 
 
 @internal
-def finish_stage(ws: Any, t: float, c_v: float) -> int:
+def finish_stage(workspace: Any, t: float, c_v: float) -> int:
     """Solve the stage; then power and work accounts."""
-    status = call_stage(ws.stage_function, ws, t, c_v * c_v, c_v)
+    status = call_stage(workspace.stage_function, workspace, t, c_v * c_v, c_v)
     if status != 0:
         return status
-    if ws.n_spins == 0:
-        evaluate_power(ws)
-    n = ws.n_ext
-    v, v_star, a = vec(ws.v, n), vec(ws.v_star, n), vec(ws.a, n)
-    for i in range(n - ws.n_work, n):
+    if workspace.n_spins == 0:
+        evaluate_power(workspace)
+    n = workspace.n_ext
+    v, v_star, a = vec(workspace.v, n), vec(workspace.v_star, n), vec(workspace.a, n)
+    for i in range(n - workspace.n_work, n):
         v[i] = v_star[i] + c_v * a[i]
     return status
 
 
 @internal
-def bdf_stage(ws: Any, ms: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
+def bdf_stage(workspace: Any, method: Any, h: float, k: int, coefficients: Any, extrapolation: Any) -> int:
     """y_{n+1} = sum_j coefficients_j y_{n-j} + coefficients_k h y'_{n+1}."""
-    n = ws.n_ext
-    newest = history_row(ws, ms, 0)
+    n = workspace.n_ext
+    newest = history_row(workspace, method, 0)
     c_v = h * coefficients[k]
-    clear(ws.q_star, n)
-    clear(ws.v_star, n)
-    combine_stars(ws, ms, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
-    clear(ws.a, ws.n)
-    clear(ws.lam, ws.m_ext)
-    predict(ws, ms, extrapolation, 0, k + 1)
-    return finish_stage(ws, history_time(ms, 0) + h, c_v)
+    clear(workspace.q_star, n)
+    clear(workspace.v_star, n)
+    combine_stars(workspace, method, newest[:n], newest[n : 2 * n], coefficients[1:], 1, k - 1, c_v)
+    clear(workspace.a, workspace.n)
+    clear(workspace.lam, workspace.m_ext)
+    predict(workspace, method, extrapolation, 0, k + 1)
+    return finish_stage(workspace, history_time(method, 0) + h, c_v)
 
 
 @internal
-def difference_norm(ws: Any, ms: Any, q: Any, v: Any, weights: Any, first: int, count: int) -> float:
+def difference_norm(workspace: Any, method: Any, q: Any, v: Any, weights: Any, first: int, count: int) -> float:
     """Norm of the coordinates (q, v) less what `weights` (of sum 1) make of the rows first ... first + count - 1 of the
     history; the work accounts do not count."""
-    n = ws.n_ext
-    difference = vec(ws.rhs, ws.n)
-    base = history_row(ws, ms, first)
+    n = workspace.n_ext
+    difference = vec(workspace.rhs, workspace.n)
+    base = history_row(workspace, method, first)
     norm = 0.0
     for kind in range(2):
-        for i in range(ws.n):
+        for i in range(workspace.n):
             difference[i] = (v[i] if kind else q[i]) - base[kind * n + i]
         for j in range(1, count):
-            row = history_row(ws, ms, first + j)
-            for i in range(ws.n):
+            row = history_row(workspace, method, first + j)
+            for i in range(workspace.n):
                 difference[i] -= weights[j] * (row[kind * n + i] - base[kind * n + i])
-        norm = max(norm, weighted_norm(difference, vec(ws.weight_v if kind else ws.weight_q, n), ws.n))
+        norm = max(
+            norm, weighted_norm(difference, vec(workspace.weight_v if kind else workspace.weight_q, n), workspace.n)
+        )
     return norm
 
 
 @internal
-def predictor_error(ws: Any, ms: Any, weights: Any, count: int) -> float:
+def predictor_error(workspace: Any, method: Any, weights: Any, count: int) -> float:
     """Norm of (q, v) less its extrapolation through `count` rows: the next backward difference."""
-    n = ws.n_ext
-    v, weight_v = vec(ws.v, n), vec(ws.weight_v, n)
-    norm = difference_norm(ws, ms, vec(ws.q, n), v, weights, 0, count)
-    newest = history_row(ws, ms, 0)
-    for i in range(n - ws.n_work, n):
+    n = workspace.n_ext
+    v, weight_v = vec(workspace.v, n), vec(workspace.weight_v, n)
+    norm = difference_norm(workspace, method, vec(workspace.q, n), v, weights, 0, count)
+    newest = history_row(workspace, method, 0)
+    for i in range(n - workspace.n_work, n):
         off = v[i] - newest[n + i]
         for j in range(1, count):
-            off -= weights[j] * (history_row(ws, ms, j)[n + i] - newest[n + i])
+            off -= weights[j] * (history_row(workspace, method, j)[n + i] - newest[n + i])
         norm = max(norm, abs(off) / weight_v[i])
     return norm
 
 
 @inlined
-def rows_available(ms: Any) -> int:
+def rows_available(method: Any) -> int:
     """Number of rows in the history."""
-    return ivec(ms.ring, 2)[1]
+    return ivec(method.ring, 2)[1]

@@ -34,48 +34,48 @@ ALPHA, BETA, GAMMA = 0, 1, 2
 
 
 @internal
-def newmark_step(ws: Any, ms: Any, h: float) -> int:
-    parameters = vec(ms.parameters, 8)
+def newmark_step(workspace: Any, method: Any, h: float) -> int:
+    parameters = vec(method.parameters, 8)
     alpha, beta, gamma = parameters[ALPHA], parameters[BETA], parameters[GAMMA]
-    n = ws.n_ext
-    row = history_row(ws, ms, 0)
-    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    n = workspace.n_ext
+    row = history_row(workspace, method, 0)
+    q_star, v_star, a = vec(workspace.q_star, n), vec(workspace.v_star, n), vec(workspace.a, n)
     c_q, c_v = beta * h * h * (1.0 + alpha), gamma * h * (1.0 + alpha)
     ratio = 1.0
-    if rows_available(ms) > 1:
-        ratio = min(h / (history_time(ms, 0) - history_time(ms, 1)), MOST_GROWTH)
+    if rows_available(method) > 1:
+        ratio = min(h / (history_time(method, 0) - history_time(method, 1)), MOST_GROWTH)
     for i in range(n):
         true = row[2 * n + i]
         algorithmic = true + ratio * (row[3 * n + i] - true)
         q_star[i] = row[i] + h * row[n + i] + h * h * ((0.5 - beta) * algorithmic - beta * alpha * true)
         v_star[i] = row[n + i] + h * ((1.0 - gamma) * algorithmic - gamma * alpha * true)
-    guess = best_guess(ws, ms, c_q, alpha, gamma)
+    guess = best_guess(workspace, method, c_q, alpha, gamma)
     if guess == BY_POSITIONS:
-        guess_by_positions(ws, ms, h, c_q)
+        guess_by_positions(workspace, method, h, c_q)
     elif guess != BY_LINE:
-        guess_by_many_rows(ws, ms, h, c_q, c_v, guess == ALL_BY_MANY_ROWS)
+        guess_by_many_rows(workspace, method, h, c_q, c_v, guess == ALL_BY_MANY_ROWS)
     else:
-        guess_by_line(ws, ms, h)
-    status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
+        guess_by_line(workspace, method, h)
+    status = call_stage(workspace.stage_function, workspace, history_time(method, 0) + h, c_q, c_v)
     if status != OK and guess != BY_POSITIONS:
-        guess_by_positions(ws, ms, h, c_q)
-        status = call_stage(ws.stage_function, ws, history_time(ms, 0) + h, c_q, c_v)
+        guess_by_positions(workspace, method, h, c_q)
+        status = call_stage(workspace.stage_function, workspace, history_time(method, 0) + h, c_q, c_v)
     if status != OK:
         return status
-    if ws.n_spins == 0:
-        evaluate_power(ws)
-    v, aux = vec(ws.v, n), vec(ws.aux, n)
-    for i in range(n - ws.n_work, n):
+    if workspace.n_spins == 0:
+        evaluate_power(workspace)
+    v, aux = vec(workspace.v, n), vec(workspace.aux, n)
+    for i in range(n - workspace.n_work, n):
         v[i] = v_star[i] + c_v * a[i]
     for i in range(n):
         aux[i] = (1.0 + alpha) * a[i] - alpha * row[2 * n + i]
-    error = vec(ws.rhs, ws.n)
+    error = vec(workspace.rhs, workspace.n)
     factor = (beta - 1.0 / (6.0 * (1.0 + alpha))) * h * h
-    for i in range(ws.n):
+    for i in range(workspace.n):
         error[i] = factor * (a[i] - row[2 * n + i])
-    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
+    norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
     if parameters[ESTIMATE] != 0.0:
-        norm = filtered_velocity_error(ws, ms, h, norm)
-    vec(ms.error, 2)[0] = norm
-    vec(ms.error, 2)[1] = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
+        norm = filtered_velocity_error(workspace, method, h, norm)
+    vec(method.error, 2)[0] = norm
+    vec(method.error, 2)[1] = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
     return OK

@@ -13,25 +13,25 @@ time just ahead the next may be larger by any factor, and so would noise of the 
 
 
 @internal
-def predict_linearly(ws: Any, ms: Any, h: float, factor: float) -> None:
+def predict_linearly(workspace: Any, method: Any, h: float, factor: float) -> None:
     """Extrapolate a and lambda through the newest two rows (or keep those of the only one); a is divided by `factor`,
     what the stage's unknown is less than the acceleration."""
-    n = ws.n_ext
-    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
+    n = workspace.n_ext
+    newest, older = history_row(workspace, method, 0), history_row(workspace, method, 1)
     ahead = 0.0
-    if rows_available(ms) > 1:
-        ahead = h / (history_time(ms, 0) - history_time(ms, 1))
-    a, lam = vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for i in range(ws.n):
+    if rows_available(method) > 1:
+        ahead = h / (history_time(method, 0) - history_time(method, 1))
+    a, lam = vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    for i in range(workspace.n):
         a[i] = (newest[2 * n + i] + ahead * (newest[2 * n + i] - older[2 * n + i])) / factor
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = newest[4 * n + i] + ahead * (newest[4 * n + i] - older[4 * n + i])
 
 
 @internal
-def finish_work(ws: Any, row: Any, h: float) -> None:
+def finish_work(workspace: Any, row: Any, h: float) -> None:
     """Work accounts by the trapezoidal rule, from the powers at both ends of the step."""
-    n = ws.n_ext
-    v, a = vec(ws.v, n), vec(ws.a, n)
-    for i in range(n - ws.n_work, n):
+    n = workspace.n_ext
+    v, a = vec(workspace.v, n), vec(workspace.a, n)
+    for i in range(n - workspace.n_work, n):
         v[i] = row[n + i] + 0.5 * h * (row[2 * n + i] + a[i])

@@ -29,54 +29,54 @@ NODES, WEIGHTS = 5, 6
 
 
 @internal
-def _error(ws: Any, ms: Any, h: float, k: int) -> float:
+def _error(workspace: Any, method: Any, h: float, k: int) -> float:
     """Error norm that the BDF of k steps would have had at the newest row."""
-    n = ws.n_ext
-    table = weight_rows(ms)
+    n = workspace.n_ext
+    table = weight_rows(method)
     s, weights = table[NODES], table[WEIGHTS]
     for j in range(k + 1):
-        s[j] = (history_time(ms, j + 1) - history_time(ms, 0)) / h
+        s[j] = (history_time(method, j + 1) - history_time(method, 0)) / h
     extrapolation_weights(s, k + 1, weights)
-    newest = history_row(ws, ms, 0)
-    norm = difference_norm(ws, ms, newest[:n], newest[n : 2 * n], weights, 1, k + 1)
+    newest = history_row(workspace, method, 0)
+    norm = difference_norm(workspace, method, newest[:n], newest[n : 2 * n], weights, 1, k + 1)
     # for equal steps s[k] = -(k + 1)
     return norm / -s[k]
 
 
 @internal
-def select_k(ws: Any, ms: Any, h: float) -> int:
+def select_k(workspace: Any, method: Any, h: float) -> int:
     """Propose the number of steps for what follows, from the history alone."""
-    choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
+    choice, parameters = vec(method.choice, CHOICE_SIZE), vec(method.parameters, 8)
     k = int(choice[K])
     choice[NEXT_K] = 0.0
     best, best_growth, best_norm = k, 0.0, 0.0
     for trial in range(k - 1, k + 2):
-        if trial < parameters[LEAST_K] or trial > parameters[MOST_K] or rows_available(ms) < trial + 2:
+        if trial < parameters[LEAST_K] or trial > parameters[MOST_K] or rows_available(method) < trial + 2:
             continue
-        norm = _error(ws, ms, h, trial)
+        norm = _error(workspace, method, h, trial)
         growth = (norm + 1e-30) ** (-1.0 / (trial + 1.0))
         if trial == k:
             growth *= WORTH
         if growth > best_growth:
             best, best_growth, best_norm = trial, growth, norm
     # the coefficients' nodes stood where the errors were formed
-    weight_rows(ms)[COUNT_ROW, 0] = 0.0
+    weight_rows(method)[COUNT_ROW, 0] = 0.0
     if best != k:
         choice[NEXT_K], choice[NEXT_NORM] = best, best_norm
     return OK
 
 
 @internal
-def select_stable_k(ws: Any, ms: Any, h: float) -> int:
+def select_stable_k(workspace: Any, method: Any, h: float) -> int:
     """Propose LEAST_K steps, of an A-stable formula, once a step does not resolve the fastest vibration of a model; of
     one without bodies of many vibrations (`Assembly.has_waves`) LEAST_K is MOST_K.
 
     The vibration is that of the stiffness at the start. A few stiff springs are no reason: both formulas damp what is
     far beyond the step; among the vibrations of a mesh there are always some in between, which grow.
     """
-    choice, parameters = vec(ms.choice, CHOICE_SIZE), vec(ms.parameters, 8)
-    k, angle = parameters[LEAST_K], h * np.sqrt(vec(ws.control, CONTROL_SIZE)[STIFFNESS_SCALE])
+    choice, parameters = vec(method.choice, CHOICE_SIZE), vec(method.parameters, 8)
+    k, angle = parameters[LEAST_K], h * np.sqrt(vec(workspace.control, CONTROL_SIZE)[STIFFNESS_SCALE])
     choice[NEXT_K] = 0.0
     if choice[K] > k and angle > RESOLVED:
-        choice[NEXT_K], choice[NEXT_NORM] = k, vec(ms.error, 2)[0]
+        choice[NEXT_K], choice[NEXT_NORM] = k, vec(method.error, 2)[0]
     return OK

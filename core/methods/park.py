@@ -34,17 +34,17 @@ def park_coefficients(s: Any, out: Any, scratch: Any) -> None:
 
 
 @internal
-def park_step(ws: Any, ms: Any, h: float) -> int:
-    table = weight_rows(ms)
-    if nodes(ms, h, STEPS, table[NODES]):
+def park_step(workspace: Any, method: Any, h: float) -> int:
+    table = weight_rows(method)
+    if nodes(method, h, STEPS, table[NODES]):
         park_coefficients(table[NODES], table[PARK], table[SECOND])
         extrapolation_weights(table[NODES], STEPS, table[EXTRAPOLATION])
     # bdf_stage predicts through one row more than the formula uses
     table[EXTRAPOLATION, STEPS] = 0.0
-    status = bdf_stage(ws, ms, h, STEPS, table[PARK], table[EXTRAPOLATION])
+    status = bdf_stage(workspace, method, h, STEPS, table[PARK], table[EXTRAPOLATION])
     if status != OK:
         return status
     ratio = 0.5 * table[PARK, STEPS] / -table[NODES, STEPS - 1]
-    vec(ms.error, 2)[0] = predictor_error(ws, ms, table[EXTRAPOLATION], STEPS) * ratio
-    vec(ms.error, 2)[1] = 2.0
+    vec(method.error, 2)[0] = predictor_error(workspace, method, table[EXTRAPOLATION], STEPS) * ratio
+    vec(method.error, 2)[1] = 2.0
     return OK

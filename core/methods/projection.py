@@ -14,13 +14,13 @@ from .explicit import explicit_step
 
 
 @internal
-def projection_step(ws: Any, ms: Any, h: float) -> int:
+def projection_step(workspace: Any, method: Any, h: float) -> int:
     """One step; the newest row's accelerations are always those of the first stage."""
-    status = explicit_step(ws, ms, h, int(vec(ms.parameters, 8)[0]), True)
+    status = explicit_step(workspace, method, h, int(vec(method.parameters, 8)[0]), True)
     if status != OK:
         return status
-    status = project(ws)
-    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
-    for i in range(ws.n_ext):
+    status = project(workspace)
+    a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
+    for i in range(workspace.n_ext):
         aux[i] = a[i]
     return status

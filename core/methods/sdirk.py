@@ -35,15 +35,15 @@ LEAST_PART = 1e-6
 
 
 @internal
-def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
+def sdirk_from_base(workspace: Any, t: float, h: float) -> Any:
     """One step from (base_q, base_v, base_a) at t. Returns (status, error norm); the result is in the workspace."""
-    n = ws.n_ext
-    base_q, base_v = vec(ws.base_q, n), vec(ws.base_v, n)
-    q_star, v_star = vec(ws.q_star, n), vec(ws.v_star, n)
-    v, a = vec(ws.v, n), vec(ws.a, n)
-    stage_v, stage_a = mat(ws.stage_v, 8, n), mat(ws.stage_a, 8, n)
+    n = workspace.n_ext
+    base_q, base_v = vec(workspace.base_q, n), vec(workspace.base_v, n)
+    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
+    v, a = vec(workspace.v, n), vec(workspace.a, n)
+    stage_v, stage_a = mat(workspace.stage_v, 8, n), mat(workspace.stage_a, 8, n)
     c_v = h * A[0, 0]
-    first_work = n - ws.n_work
+    first_work = n - workspace.n_work
     for s in range(STAGES):
         for i in range(n):
             p_q, p_v = base_q[i], base_v[i]
@@ -52,30 +52,30 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
                 p_v += h * A[s, j] * stage_a[j, i]
             q_star[i] = p_q + c_v * p_v
             v_star[i] = p_v
-        status = call_stage(ws.stage_function, ws, t + C[s] * h, c_v * c_v, c_v)
+        status = call_stage(workspace.stage_function, workspace, t + C[s] * h, c_v * c_v, c_v)
         if status != OK:
             return status, 0.0
-        if ws.n_spins == 0:
-            evaluate_power(ws)
+        if workspace.n_spins == 0:
+            evaluate_power(workspace)
         for i in range(first_work, n):
             v[i] = v_star[i] + c_v * a[i]
         for i in range(n):
             stage_v[s, i] = v[i]
             stage_a[s, i] = a[i]
-    error = vec(ws.rhs, ws.n)
-    for i in range(ws.n):
+    error = vec(workspace.rhs, workspace.n)
+    for i in range(workspace.n):
         total = 0.0
         for j in range(STAGES):
             total += (A[4, j] - B_EMBEDDED[j]) * stage_v[j, i]
         error[i] = h * total
-    norm = weighted_norm(error, vec(ws.weight_q, n), ws.n)
-    for i in range(ws.n):
+    norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
+    for i in range(workspace.n):
         total = 0.0
         for j in range(STAGES):
             total += (A[4, j] - B_EMBEDDED[j]) * stage_a[j, i]
         error[i] = h * total
-    weight_v = vec(ws.weight_v, n)
-    norm = max(norm, weighted_norm(error, weight_v, ws.n))
+    weight_v = vec(workspace.weight_v, n)
+    norm = max(norm, weighted_norm(error, weight_v, workspace.n))
     for i in range(first_work, n):
         total = 0.0
         for j in range(STAGES):
@@ -85,55 +85,55 @@ def sdirk_from_base(ws: Any, t: float, h: float) -> Any:
 
 
 @internal
-def base_from_row(ws: Any, ms: Any) -> None:
+def base_from_row(workspace: Any, method: Any) -> None:
     """Start from the newest row of history."""
-    n = ws.n_ext
-    row = history_row(ws, ms, 0)
-    base_q, base_v, a = vec(ws.base_q, n), vec(ws.base_v, n), vec(ws.a, n)
-    lam = vec(ws.lam, ws.m_ext)
+    n = workspace.n_ext
+    row = history_row(workspace, method, 0)
+    base_q, base_v, a = vec(workspace.base_q, n), vec(workspace.base_v, n), vec(workspace.a, n)
+    lam = vec(workspace.lam, workspace.m_ext)
     for i in range(n):
         base_q[i] = row[i]
         base_v[i] = row[n + i]
         a[i] = row[2 * n + i]
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = row[4 * n + i]
 
 
 @internal
-def sdirk_step(ws: Any, ms: Any, h: float) -> int:
+def sdirk_step(workspace: Any, method: Any, h: float) -> int:
     """One step, with the error estimate of the embedded formula."""
-    base_from_row(ws, ms)
-    status, norm = sdirk_from_base(ws, history_time(ms, 0), h)
-    vec(ms.error, 2)[0] = norm
-    vec(ms.error, 2)[1] = 3.0
+    base_from_row(workspace, method)
+    status, norm = sdirk_from_base(workspace, history_time(method, 0), h)
+    vec(method.error, 2)[0] = norm
+    vec(method.error, 2)[1] = 3.0
     return status
 
 
 @internal
-def _take_over(ws: Any) -> None:
+def _take_over(workspace: Any) -> None:
     """The point reached is where the next part begins."""
-    n = ws.n_ext
-    q, v, base_q, base_v = vec(ws.q, n), vec(ws.v, n), vec(ws.base_q, n), vec(ws.base_v, n)
+    n = workspace.n_ext
+    q, v, base_q, base_v = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.base_q, n), vec(workspace.base_v, n)
     for i in range(n):
         base_q[i] = q[i]
         base_v[i] = v[i]
 
 
 @internal
-def _in_unequal_parts(ws: Any, t: float, h: float, parts: int) -> int:
+def _in_unequal_parts(workspace: Any, t: float, h: float, parts: int) -> int:
     """A step over a jump, from the base: parts that keep the embedded error below one are short only about there. The
     first is one of so many equal ones."""
     done, size, least = 0.0, h / parts, LEAST_PART * h
     while done < h:
         last = size >= h - done
         part = h - done if last else size
-        status, norm = sdirk_from_base(ws, t + done, part)
+        status, norm = sdirk_from_base(workspace, t + done, part)
         if status != OK:
             return status
         if norm > 1.0 and part > least:
             size = 0.25 * part
             continue
-        _take_over(ws)
+        _take_over(workspace)
         done = h if last else done + part
         if norm < 0.01:
             size = 2.0 * part
@@ -141,36 +141,36 @@ def _in_unequal_parts(ws: Any, t: float, h: float, parts: int) -> int:
 
 
 @internal
-def sdirk_fine_step(ws: Any, ms: Any, h: float) -> int:
+def sdirk_fine_step(workspace: Any, method: Any, h: float) -> int:
     """One grid step in as many equal parts as keep the embedded error of each below one: starting values that
     do not spoil the order of a fixed-step multistep method. Where that takes very many, or the error falls more slowly
     than the square of their size, something jumps inside."""
     parts, before, error = 1, 1, np.inf
     while True:
-        base_from_row(ws, ms)
-        t = history_time(ms, 0)
+        base_from_row(workspace, method)
+        t = history_time(method, 0)
         worst = 0.0
         status = OK
         for part in range(parts):
-            status, norm = sdirk_from_base(ws, t + part * h / parts, h / parts)
+            status, norm = sdirk_from_base(workspace, t + part * h / parts, h / parts)
             if status != OK:
                 return status
             worst = max(worst, norm)
             if worst > 1.0:
                 break
-            _take_over(ws)
+            _take_over(workspace)
         if worst <= 1.0:
             break
         jumps = worst * parts**2 > error * before**2
         before, error = parts, worst
         parts = max(2 * parts, int(parts * min(worst, 1e8) ** 0.25) + 1)
         if jumps or parts > EQUAL_PARTS:
-            base_from_row(ws, ms)
-            status = _in_unequal_parts(ws, t, h, parts)
+            base_from_row(workspace, method)
+            status = _in_unequal_parts(workspace, t, h, parts)
             if status != OK:
                 return status
             break
-    vec(ws.t, 1)[0] = history_time(ms, 0) + h
-    vec(ms.error, 2)[0] = 0.0
-    vec(ms.error, 2)[1] = 3.0
+    vec(workspace.t, 1)[0] = history_time(method, 0) + h
+    vec(method.error, 2)[0] = 0.0
+    vec(method.error, 2)[1] = 3.0
     return OK

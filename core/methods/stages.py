@@ -23,26 +23,26 @@ STAGE_COUNT = 0  # parameter
 
 
 @inlined
-def stage_rows(ws: Any) -> Any:
+def stage_rows(workspace: Any) -> Any:
     """The stages as rows like those of the history: q, v, a, correction of a (each n_ext), lam (m_ext)."""
-    return mat(ws.stage_rows, COUPLED_STAGES, ws.row_length)
+    return mat(workspace.stage_rows, COUPLED_STAGES, workspace.row_length)
 
 
 @internal
-def load_stage(ws: Any, ms: Any, i: int, t: float, h: float) -> None:
+def load_stage(workspace: Any, method: Any, i: int, t: float, h: float) -> None:
     """Stage i becomes the current point of the workspace."""
-    n, row = ws.n_ext, stage_rows(ws)[i]
-    q, v, a, lam = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), vec(ws.lam, ws.m_ext)
-    for l in range(ws.n):
+    n, row = workspace.n_ext, stage_rows(workspace)[i]
+    q, v, a, lam = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
+    for l in range(workspace.n):
         q[l] = row[l]
         v[l] = row[n + l]
         a[l] = row[2 * n + l]
-    for l in range(ws.m_ext):
+    for l in range(workspace.m_ext):
         lam[l] = row[4 * n + l]
-    vec(ws.t, 1)[0] = t + weight_rows(ms)[VECTORS, NODES + i] * h
+    vec(workspace.t, 1)[0] = t + weight_rows(method)[VECTORS, NODES + i] * h
 
 
 @inlined
-def stage_count(ms: Any) -> int:
+def stage_count(method: Any) -> int:
     """Number of stages."""
-    return int(vec(ms.parameters, 8)[STAGE_COUNT])
+    return int(vec(method.parameters, 8)[STAGE_COUNT])

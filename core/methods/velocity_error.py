@@ -16,8 +16,8 @@ tolerance sees, and velocities e w that it does.
 
 from typing import Any
 
-from ..assembly.compatibility import factor_equations, solve_equations
 from ..assembly.evaluate import evaluate_constraints, evaluate_residuals, evaluate_tangent
+from ..assembly.redundant_reactions import factor_equations, solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.corotating import enter_frame, leave_frame
@@ -49,23 +49,23 @@ def _integral(h: float, shift: float, times: Any, known: bool, a1: float, a0: fl
 
 
 @internal
-def _find_error(ws: Any, ms: Any, h: float, shift: float) -> float:
+def _find_error(workspace: Any, method: Any, h: float, shift: float) -> float:
     """Local error of the velocities into `rhs`; the largest of the work accounts in units of their weights."""
-    n, rows = ws.n_ext, rows_available(ms)
-    newest, older = history_row(ws, ms, 0), history_row(ws, ms, 1)
-    v, a, error = vec(ws.v, n), vec(ws.a, n), vec(ws.rhs, ws.n)
+    n, rows = workspace.n_ext, rows_available(method)
+    newest, older = history_row(workspace, method, 0), history_row(workspace, method, 1)
+    v, a, error = vec(workspace.v, n), vec(workspace.a, n), vec(workspace.rhs, workspace.n)
     known, last, first = rows > 1, 0.0, 0.0
     if known:
-        last = history_time(ms, 0) - history_time(ms, 1)
+        last = history_time(method, 0) - history_time(method, 1)
     if rows > 2:
-        first = history_time(ms, 1) - history_time(ms, 2)
+        first = history_time(method, 1) - history_time(method, 2)
     times = (h + shift * h, shift * last, shift * first - last)
     of_powers = (h, 0.0, -last)
-    for i in range(ws.n):
+    for i in range(workspace.n):
         j = 2 * n + i
         error[i] = v[i] - newest[n + i] - _integral(h, shift, times, known, a[i], newest[j], older[j])
-    of_work, weight_v = 0.0, vec(ws.weight_v, n)
-    for i in range(n - ws.n_work, n):
+    of_work, weight_v = 0.0, vec(workspace.weight_v, n)
+    for i in range(n - workspace.n_work, n):
         j = 2 * n + i
         off = v[i] - newest[n + i] - _integral(h, 0.0, of_powers, known, a[i], newest[j], older[j])
         of_work = max(of_work, abs(off) / weight_v[i])
@@ -73,48 +73,50 @@ def _find_error(ws: Any, ms: Any, h: float, shift: float) -> float:
 
 
 @internal
-def _remove_normal_part(ws: Any) -> None:
+def _remove_normal_part(workspace: Any) -> None:
     """Take from the velocities in `rhs` their part along the constraints, M^-1 Phi_q^T mu, with the factors of
     `kkt_query`; the residuals of the workspace's point are known before and after."""
-    n, active = ws.n, ivec(ws.active, ws.m_act)
-    v, phid = vec(ws.v, n), vec(ws.phid, ws.m_ext)
+    n, active = workspace.n, ivec(workspace.active, workspace.m_act)
+    v, phid = vec(workspace.v, n), vec(workspace.phid, workspace.m_ext)
     # what the formula kept in q* and v* is no longer needed
-    rhs, error, was = vec(ws.rhs, n + ws.m_act), vec(ws.q_star, n), vec(ws.v_star, n)
+    rhs, error, was = vec(workspace.rhs, n + workspace.m_act), vec(workspace.q_star, n), vec(workspace.v_star, n)
     for i in range(n):
         error[i] = rhs[i]
         v[i] -= error[i]
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         was[i] = phid[active[i]]
-    evaluate_residuals(ws)
-    for i in range(ws.m_act):
+    evaluate_residuals(workspace)
+    for i in range(workspace.m_act):
         # phid is linear in v
         rhs[n + i] = phid[active[i]] - was[i]
     for i in range(n):
         rhs[i] = 0.0
         v[i] += error[i]
-    solve_equations(ws, ws.kkt_query)
+    solve_equations(workspace, workspace.kkt_query)
     for i in range(n):
         rhs[i] += error[i]
-    evaluate_residuals(ws)
+    evaluate_residuals(workspace)
 
 
 @internal
-def velocity_error(ws: Any, ms: Any, h: float) -> float:
+def velocity_error(workspace: Any, method: Any, h: float) -> float:
     """Weighted norm of the local error of velocities and work accounts, of the step of size h from the newest row to
     the workspace's point, whose velocities meet the constraints by a partition, or whose constraints are none."""
-    of_work = _find_error(ws, ms, h, 0.0)
-    return max(of_work, weighted_norm(vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext), ws.n))
+    of_work = _find_error(workspace, method, h, 0.0)
+    return max(
+        of_work, weighted_norm(vec(workspace.rhs, workspace.n), vec(workspace.weight_v, workspace.n_ext), workspace.n)
+    )
 
 
 @internal
-def _filter(ws: Any, h: float, times: int) -> None:
+def _filter(workspace: Any, h: float, times: int) -> None:
     """Velocities in `rhs`, multiplied `times` times by [M + c_v D + c_q K, Phi_q^T; Phi_q, 0]^-1 M, the factors of the
     stage whose solution the workspace holds."""
-    n = ws.n
+    n = workspace.n
     # what the formula kept in q* and v* is no longer needed
-    a, r, rhs = vec(ws.a, n), vec(ws.r, n), vec(ws.rhs, n + ws.m_act)
-    kept, left = vec(ws.q_star, n), vec(ws.v_star, n)
-    evaluate_residuals(ws)
+    a, r, rhs = vec(workspace.a, n), vec(workspace.r, n), vec(workspace.rhs, n + workspace.m_act)
+    kept, left = vec(workspace.q_star, n), vec(workspace.v_star, n)
+    evaluate_residuals(workspace)
     for i in range(n):
         # what is left of r belongs to the rounding of the constraints, too much where forces are stiff
         kept[i], left[i] = a[i], r[i]
@@ -122,19 +124,19 @@ def _filter(ws: Any, h: float, times: int) -> None:
         # r is linear in a
         for i in range(n):
             a[i] = kept[i] + rhs[i] / h
-        evaluate_residuals(ws)
+        evaluate_residuals(workspace)
         for i in range(n):
             rhs[i] = h * (r[i] - left[i])
-        for i in range(ws.m_act):
+        for i in range(workspace.m_act):
             rhs[n + i] = 0.0
-        solve_equations(ws, ws.kkt)
+        solve_equations(workspace, workspace.kkt)
     for i in range(n):
         a[i] = kept[i]
-    evaluate_constraints(ws)
+    evaluate_constraints(workspace)
 
 
 @internal
-def filtered_velocity_error(ws: Any, ms: Any, h: float, norm: float) -> float:
+def filtered_velocity_error(workspace: Any, method: Any, h: float, norm: float) -> float:
     """The larger of `norm` and the weighted norm of the local error of velocities and work accounts, without what stiff
     components ring.
 
@@ -145,18 +147,18 @@ def filtered_velocity_error(ws: Any, ms: Any, h: float, norm: float) -> float:
     done twice; then what rings counts most where w h is about 1, which holds a vibration that has been resolved. In the
     first steps, which may be too large for one that is there, it is done once.
     """
-    norm = max(norm, _find_error(ws, ms, h, 0.0))
-    rhs, weight_v = vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext)
-    if weighted_norm(rhs, weight_v, ws.n) <= norm:
+    norm = max(norm, _find_error(workspace, method, h, 0.0))
+    rhs, weight_v = vec(workspace.rhs, workspace.n), vec(workspace.weight_v, workspace.n_ext)
+    if weighted_norm(rhs, weight_v, workspace.n) <= norm:
         return norm
-    leave_frame(ws)
-    _filter(ws, h, 1 if rows_available(ms) < SETTLED else 2)
-    enter_frame(ws)
-    return max(norm, weighted_norm(rhs, weight_v, ws.n))
+    leave_frame(workspace)
+    _filter(workspace, h, 1 if rows_available(method) < SETTLED else 2)
+    enter_frame(workspace)
+    return max(norm, weighted_norm(rhs, weight_v, workspace.n))
 
 
 @internal
-def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: bool) -> Any:
+def absolute_velocity_error(workspace: Any, method: Any, h: float, shift: float, factored: bool) -> Any:
     """(status, norm) of the velocities alone for formulas on all coordinates, without what lies along the constraints:
     nor do work accounts count, since the multipliers that ring there are the power and the impulse of contacts.
 
@@ -164,12 +166,12 @@ def absolute_velocity_error(ws: Any, ms: Any, h: float, shift: float, factored: 
     those of the row that begins a history, for its own time. `factored`: whether `kkt_query` has the mass matrix of
     (nearly) this point.
     """
-    if ws.m_act > 0 and not factored:
-        evaluate_tangent(ws, 0.0, 0.0)
-        if factor_equations(ws, ws.kkt_query) != 0:
+    if workspace.m_act > 0 and not factored:
+        evaluate_tangent(workspace, 0.0, 0.0)
+        if factor_equations(workspace, workspace.kkt_query) != 0:
             return REANALYZE, 0.0
-        ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    _find_error(ws, ms, h, shift)
-    if ws.m_act > 0:
-        _remove_normal_part(ws)
-    return OK, weighted_norm(vec(ws.rhs, ws.n), vec(ws.weight_v, ws.n_ext), ws.n)
+        ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    _find_error(workspace, method, h, shift)
+    if workspace.m_act > 0:
+        _remove_normal_part(workspace)
+    return OK, weighted_norm(vec(workspace.rhs, workspace.n), vec(workspace.weight_v, workspace.n_ext), workspace.n)

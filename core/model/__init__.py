@@ -1,1 +1,1 @@
-"""The vocabulary of model records that elements are built from. `Model` itself is in `core/description.py`."""
+"""The vocabulary of model records that elements are built from. `Model` itself is in `core/multibody_model.py`."""

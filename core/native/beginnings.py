@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..description import Model
 from ..errors import SimulationError, TlismniError
+from ..multibody_model import Model
 from .errors import NativeError
 from .in_process import NativeModel, NativeRun
 from .parameters import Parameter, Setting

@@ -3,7 +3,7 @@
 
 #include "codes.h"
 #include "image.h"
-#include "way.h"
+#include "advance.h"
 
 #include <math.h>
 
@@ -19,31 +19,31 @@ static double stop_of(const tlismni_run *run, double t) {
 
 tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
     *event = false;
-    tlismni_status status = way_begin(run, t);
+    tlismni_status status = advance_begin(run, t);
     if (status != TLISMNI_OK) {
         return status;
     }
     double start = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
-    int64_t first = way_used(run);
+    int64_t first = advance_used(run);
     for (;;) {
         while (status == TLISMNI_OK && tlismni_event_due(run)) {
-            status = way_settle(run);
+            status = advance_settle(run);
         }
         if (status != TLISMNI_OK) {
-            return way_end(run, status);
+            return advance_end(run, status);
         }
         goals[GOAL] = t;
         goals[LAST_STOP] = stop;
-        status = way_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        status = advance_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
         if (status != TLISMNI_OK) {
-            return way_end(run, status);
+            return advance_end(run, status);
         }
         double computed = tlismni_computed(run);
-        if (!way_any_pending(run) || computed > t) {
-            way_arrive(run, t);
+        if (!advance_any_pending(run) || computed > t) {
+            advance_arrive(run, t);
             return TLISMNI_OK;
         }
-        way_arrive(run, computed);
+        advance_arrive(run, computed);
         if (computed > start) {
             *event = true;
             return TLISMNI_OK;
@@ -53,30 +53,30 @@ tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
 
 tlismni_status tlismni_next_point(tlismni_run *run, double t, double *point) {
     *point = run->beside.now;
-    tlismni_status status = way_begin(run, t);
+    tlismni_status status = advance_begin(run, t);
     if (status != TLISMNI_OK) {
         return status;
     }
     double now = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
-    int64_t first = way_used(run);
+    int64_t first = advance_used(run);
     while (status == TLISMNI_OK && tlismni_event_due(run)) {
-        status = way_settle(run);
+        status = advance_settle(run);
     }
     if (status == TLISMNI_OK && tlismni_computed(run) <= now) {
         goals[GOAL] = now + 8.0 * (nextafter(fabs(now), INFINITY) - fabs(now)); /* no step ends before that */
         goals[LAST_STOP] = stop;
-        status = way_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        status = advance_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
     }
     *point = fmin(tlismni_computed(run), t);
-    return way_end(run, status);
+    return advance_end(run, status);
 }
 
 tlismni_status tlismni_happen(tlismni_run *run, bool *again) {
     *again = false;
-    tlismni_status status = way_begin(run, run->beside.now);
+    tlismni_status status = advance_begin(run, run->beside.now);
     if (status == TLISMNI_OK && tlismni_event_due(run)) {
-        status = way_settle(run);
+        status = advance_settle(run);
         *again = status == TLISMNI_OK && tlismni_event_due(run);
     }
-    return status == INPUT_REFUSED ? status : way_end(run, status);
+    return status == INPUT_REFUSED ? status : advance_end(run, status);
 }

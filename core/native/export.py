@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled.library import Library
-from ..description import Model
 from ..errors import SimulationError
+from ..multibody_model import Model
 from ..simulation.simulation import Simulation
 from .beginning import let_begin
 from .beginnings import as_far_as_it_begins, prove_beginning, prove_together
 from .errors import NativeError
-from .follows import Memory, parameter_of
 from .image_file import native_image, own_library, refuse_motions
 from .in_process import NativeModel, NativeRun
+from .parameter_dependence import Memory, parameter_of
 from .parameters import Parameter, Setting, Tried, settings_of, startable
 from .prepare import channels_at, points, rehearse, start_inputs
 from .together import together

@@ -65,10 +65,10 @@ def called_symbols(library: Library) -> list[str]:
 
 def numbers_of(sim: Any, most_steps: int, begins: bool) -> bytes:
     """NUMBERS of a simulation that may begin anew, or may not."""
-    assembly, ex = sim.assembly, sim.crossing
+    assembly, exchange = sim.assembly, sim.crossing
     whole = (
         len(assembly.input_names), len(sim.table.channels), len(assembly.contacts), assembly.n,
-        len(sim.drive.events), most_steps, int(ex._record.table["chunk"][0]), int(bool(sim.settings.step)),
+        len(sim.drive.events), most_steps, int(exchange._record.table["chunk"][0]), int(bool(sim.settings.step)),
         len(sim.workspace.dropped), len(sim.events), int(begins), most_matrix_words(sim.workspace),
     )  # fmt: skip
     return struct.pack(f"<{len(whole)}q3d", *whole, sim.t, SHORTEST, PUNCTUAL)
@@ -83,11 +83,12 @@ def most_matrix_words(workspace: Any) -> int:
 
 def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """The arrays of PLACES."""
-    ex, ws = sim.crossing._record, sim.workspace.arrays
+    exchange, workspace = sim.crossing._record, sim.workspace.arrays
     return (
-        ex.table, sim.drive.record.table, ex.table["read"], ex.table["chunk"], ex.arrays["times"],
-        ex.arrays["inputs"], ex.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
-        sim.drive.pending, sim.clock, ws["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
-        parameters, ws["control"], sim.beginning.record.table, sim.beginning.numbers,
-        ex.arrays["rates"], sim.workspace._record.table,
+        exchange.table, sim.drive.record.table, exchange.table["read"], exchange.table["chunk"],
+        exchange.arrays["times"],
+        exchange.arrays["inputs"], exchange.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
+        sim.drive.pending, sim.clock, workspace["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
+        parameters, workspace["control"], sim.beginning.record.table, sim.beginning.numbers,
+        exchange.arrays["rates"], sim.workspace._record.table,
     )  # fmt: skip

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..description import Model
 from ..errors import TlismniError
+from ..multibody_model import Model
 from .errors import NativeError
 from .forms import Form
 from .reach import begin_of

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from ..assembly.partition import prepare
 from ..assembly.workspace import all_tangents
-from ..description import Model
 from ..errors import ConsistencyError
 from ..events.instant import Instant
 from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
+from ..multibody_model import Model
 from ..simulation.drive_record import Drive
 from .errors import NativeError
 

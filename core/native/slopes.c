@@ -2,7 +2,7 @@
 
 #include "codes.h"
 #include "image.h"
-#include "way.h"
+#include "advance.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,13 +16,13 @@ typedef int32_t (*InTime)(void **result, void **raised, void *record, REAL_TYPES
 
 /* Have the present time as the point that compiled code works on, and keep in `room` what that must not change. */
 static tlismni_status look_closely(tlismni_run *run, void *room) {
-    tlismni_status status = way_begin(run, run->beside.now);
+    tlismni_status status = advance_begin(run, run->beside.now);
     if (status != TLISMNI_OK) {
         return status;
     }
     tlismni_save(run, room);
     tlismni_want(run, TLISMNI_ALL);
-    status = way_read(run, run->beside.now);
+    status = advance_read(run, run->beside.now);
     if (status != TLISMNI_OK) {
         (void)tlismni_restore(run, room);
     }

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import TlismniError
 from .errors import NativeError
-from .follows import Memory
+from .parameter_dependence import Memory
 from .parameters import ALONE, PRODUCT, SUM, Parameter, Setting
 from .reach import begin_of
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..assembly.assembly import Assembly, assemble
 from ..assembly.start_turns import Watched
-from ..description import Model
+from ..multibody_model import Model
 from ..simulation.blueprint import Blueprint, Unstarted, take_numbers, what_differs
 from .errors import NativeError
 from .reach import begin_of

@@ -6,8 +6,8 @@ Who drives a run without Python calls it; where something has to be built that i
 
 from typing import Any
 
-from ..assembly.compatibility import analyze_equations
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.redundant_reactions import analyze_equations
 from ..compiled.jit import compiled
 from ..compiled.views import vec
 from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
@@ -19,40 +19,40 @@ from ..time_loop.drive import loop_at, method_at, workspace_at
 
 
 @compiled
-def repair_now(dr: Any) -> int:
+def repair_now(drive: Any) -> int:
     """What `repair` does: a status of `events/records.py`; with any but SETTLED the run cannot go on."""
-    ws, ms, ev = workspace_at(dr.workspace), method_at(dr.method), instant_at(dr.instant)
-    rate = vec(ws.rate, RATE_SIZE)
+    workspace, method, instant = workspace_at(drive.workspace), method_at(drive.method), instant_at(drive.instant)
+    rate = vec(workspace.rate, RATE_SIZE)
     c_v, condition = rate[FACTOR_CV], rate[CONDITION]
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    status = call_part(ev.use_modes, ev, dr, ws, ms)
+    recall(workspace, method, 0)
+    evaluate_residuals(workspace)
+    status = call_part(instant.use_modes, instant, drive, workspace, method)
     if status != SETTLED:
         return status
     rate[CHOICE_CONDITION] = condition
     # pivots of the stages' matrix, which may be others than those of the mass matrix alone
-    evaluate_tangent(ws, c_v * c_v, c_v)
-    code = analyze_equations(ws, ws.kkt)
+    evaluate_tangent(workspace, c_v * c_v, c_v)
+    code = analyze_equations(workspace, workspace.kkt)
     if code != OK and code != WANT_ROOM:
-        evaluate_tangent(ws, 0.0, 0.0)
-        code = analyze_equations(ws, ws.kkt)
+        evaluate_tangent(workspace, 0.0, 0.0)
+        code = analyze_equations(workspace, workspace.kkt)
     if code == WANT_ROOM:
         return WANT_MEMORY
     return SETTLED if code == OK else SINGULAR_MATRIX
 
 
 @compiled
-def go_by_impulses(dr: Any) -> int:
+def go_by_impulses(drive: Any) -> int:
     """Where no step can be made from the newest row: steps of impulses from there (`events/zeno.py`), if enough
     contacts touch; SETTLED, or DECLINED, and nothing has happened."""
-    ws, ms, ev = workspace_at(dr.workspace), method_at(dr.method), instant_at(dr.instant)
-    if ws.n_contacts == 0:
+    workspace, method, instant = workspace_at(drive.workspace), method_at(drive.method), instant_at(drive.instant)
+    if workspace.n_contacts == 0:
         return DECLINED
-    recall(ws, ms, 0)
-    evaluate_residuals(ws)
-    status = int(call_part(ev.step_through, ev, dr, ws, ms))
+    recall(workspace, method, 0)
+    evaluate_residuals(workspace)
+    status = int(call_part(instant.step_through, instant, drive, workspace, method))
     if status == SETTLED:
         # what failed has left it at nearly nothing
-        clock = vec(loop_at(dr.loop).clock, CLOCK_SIZE)
+        clock = vec(loop_at(drive.loop).clock, CLOCK_SIZE)
         clock[STEP_SIZE] = clock[PUSH_STEP]
     return status

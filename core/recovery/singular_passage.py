@@ -23,14 +23,7 @@ from ..event_detection.crossings import find_events
 from ..methods.history import recall
 from ..rounding import CONSTRAINT_NOISE, SAME_INSTANT
 from ..state.run_records import EVENT, HELD, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
-from ..state.workspace_records import (
-    FACTOR_AGE,
-    LEAST_CONDITION,
-    LOOKED_CONDITION,
-    MOST_CONDITION,
-    OK,
-    REANALYZE,
-)
+from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
 from ..time_loop.time_loop import accept, set_weights_at, violates_redundant
 from .collocation import Collocation, Points, gauss
 from .singular_position import find_singular, natural_step
@@ -262,7 +255,7 @@ def _refuse_branching(sim: "Simulation", result: _Result, singular: float) -> No
 
 def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -> tuple[int, LongStep | None]:
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
-    ws, ms, lc = sim.workspace.record, sim._method.record, sim._loop.record
+    workspace, method, loop = sim.workspace.record, sim._method.record, sim._loop.record
     ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
     sim.clock[[STEP_SIZE, HELD, PREVIOUS_NORM]] = natural, 0.0, 0.0
     rate[FACTOR_AGE] = -1.0
@@ -270,13 +263,13 @@ def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -
     for k in range(1, last):
         over.place(points, k)
         gap = float(points.times[k] - points.times[k - 1])
-        violated = violates_redundant(ws, 1.0)
-        if violated or find_events(ws, ms, lc, gap, False):
+        violated = violates_redundant(workspace, 1.0)
+        if violated or find_events(workspace, method, loop, gap, False):
             if count == 1:
                 sim.clock[TRIAL_STEP] = gap
                 return (REANALYZE, None) if violated else (EVENT, over)
             break
-        accept(ws, ms, lc)
+        accept(workspace, method, loop)
         count += 1
     sim.flush()
     ring[1], ring[2] = count, count

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..description import Model
 from ..errors import ModelError
 from ..extras import require
+from ..multibody_model import Model
 from ..tolerances import OfScales
 from .tables import columns, descriptions, to_xarray, units
 from .text import name_of

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assembly.numbering import ModelNumbering
-from ..description import Model
 from ..elements import (
     AxialRod,
     BodyElement,
@@ -32,6 +31,7 @@ from ..errors import ModelError
 from ..model.attitude import UPRIGHT, EulerParameters
 from ..model.said_angle import CountsTurns
 from ..model.words import an
+from ..multibody_model import Model
 
 if TYPE_CHECKING:
     from .result import Result

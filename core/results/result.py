@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assembly.redundancy import RedundantRow
-from ..description import Model
 from ..errors import ModelError, UnknownNameError
 from ..events import Event, Fallback
 from ..model.channels import Channel
+from ..multibody_model import Model
 from ..state.run_records import LOG_COLUMNS
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assembly.redundancy import RedundantRow
-from ..description import Model
 from ..errors import ModelError
 from ..events import Event, Fallback
 from ..model.channels import Channel, Enumeration
+from ..multibody_model import Model
 from ..tolerances import OfScales
 from .files import COLUMNS, EVENTS, FORMAT, HEADER, PARTS, STEPS
 from .result import Result

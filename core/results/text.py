@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..description import Model
+from ..multibody_model import Model
 from .names import owners
 
 if TYPE_CHECKING:

@@ -44,11 +44,11 @@ from ..state.workspace_records import (
     WORST_CONDITION,
 )
 from ..time_loop.time_loop import trial_step
-from .division import Division
 from .failures import failure_of
 from .locating import locate_again, locate_in_long_step
 from .painleve import refuse_passed_jam
 from .step_budget import step_count, steps_left
+from .step_subdivision import Division
 
 if TYPE_CHECKING:
     from .simulation import Simulation

@@ -14,7 +14,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..event_detection.crossings import remember
 from ..events.event_handling import begin_pending_forces
-from ..events.laws import FORCE
+from ..events.impact_law_codes import FORCE
 from ..events.prepare import rank_of
 from ..events.records import REPEATED_ROWS, SETTLED, call_part
 from ..methods.history import restart
@@ -23,16 +23,7 @@ from ..stage.accelerations import solve_accelerations
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from .begin_measure import place
-from .begin_record import (
-    BEGIN_SIZE,
-    FIRST_STEP,
-    FOUND_SIZE,
-    LOOK_AT_RANK,
-    MOVED,
-    MOVED_RATES,
-    START_TOLERANCE,
-    WHO,
-)
+from .begin_record import BEGIN_SIZE, FIRST_STEP, FOUND_SIZE, LOOK_AT_RANK, MOVED, MOVED_RATES, START_TOLERANCE, WHO
 
 # statuses besides those of `events/records.py`
 NO_POSITIONS, NO_VELOCITIES = 40, 41
@@ -46,97 +37,110 @@ NO_START = 44
 
 
 @internal
-def start(bg: Any, dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+def start(begin: Any, drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Start with the numbers that the tables have now, as far as contacts with force laws that act: SETTLED, or why it
     cannot. Other contacts that touch are left pending."""
-    place(bg, ws)
-    status = _make_consistent(bg, ev, dr, ws, ms)
+    place(begin, workspace)
+    status = _make_consistent(begin, instant, drive, workspace, method)
     if status == SETTLED:
-        status = _find_touching(bg, dr, ws)
+        status = _find_touching(begin, drive, workspace)
     if status == SETTLED:
-        status = call_part(ev.use_modes, ev, dr, ws, ms)
+        status = call_part(instant.use_modes, instant, drive, workspace, method)
     if status != SETTLED:
         return int(status)
-    if not _accelerate(ws):
+    if not _accelerate(workspace):
         return NO_START
-    clock, first = vec(lc.clock, CLOCK_SIZE), vec(bg.numbers, BEGIN_SIZE)[FIRST_STEP]
-    clock[STEP_SIZE] = first if first > 0.0 else _first_step(ws, clock[MAX_STEP])
-    new_history(ws, ms, lc)
-    return _begin_forces(dr, ev, ws, ms, lc)
+    clock, first = vec(loop.clock, CLOCK_SIZE), vec(begin.numbers, BEGIN_SIZE)[FIRST_STEP]
+    clock[STEP_SIZE] = first if first > 0.0 else _first_step(workspace, clock[MAX_STEP])
+    new_history(workspace, method, loop)
+    return _begin_forces(drive, instant, workspace, method, loop)
 
 
 @internal
-def _make_consistent(bg: Any, ev: Any, dr: Any, ws: Any, ms: Any) -> int:
+def _make_consistent(begin: Any, instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Positions and velocities on the constraints by the least change in the M-norm."""
-    evaluate_residuals(ws)
-    status = call_part(ev.use_modes, ev, dr, ws, ms)
+    evaluate_residuals(workspace)
+    status = call_part(instant.use_modes, instant, drive, workspace, method)
     if status != SETTLED:
         return SINGULAR_START if status == REPEATED_ROWS else status
-    evaluate_residuals(ws)
-    level = rate_level(ws)
-    if not _meet(bg, ws, False, 1.0):
+    evaluate_residuals(workspace)
+    level = rate_level(workspace)
+    if not _meet(begin, workspace, False, 1.0):
         return NO_POSITIONS
-    if not _meet(bg, ws, True, level):
+    if not _meet(begin, workspace, True, level):
         return NO_VELOCITIES
-    if ws.n == 0 or ws.m_act == 0:
+    if workspace.n == 0 or workspace.m_act == 0:
         return SETTLED
-    evaluate_residuals(ws)
-    status, look = call_part(ev.use_modes, ev, dr, ws, ms), vec(bg.numbers, BEGIN_SIZE)[LOOK_AT_RANK] != 0.0
-    if status == REPEATED_ROWS or (status == SETTLED and look and rank_of(ev, ws, START_RANK) < ws.m_act):
+    evaluate_residuals(workspace)
+    status, look = (
+        call_part(instant.use_modes, instant, drive, workspace, method),
+        vec(begin.numbers, BEGIN_SIZE)[LOOK_AT_RANK] != 0.0,
+    )
+    if status == REPEATED_ROWS or (
+        status == SETTLED and look and rank_of(instant, workspace, START_RANK) < workspace.m_act
+    ):
         return SINGULAR_START
     return status
 
 
 @internal
-def _meet(bg: Any, ws: Any, rates: bool, level: float) -> bool:
+def _meet(begin: Any, workspace: Any, rates: bool, level: float) -> bool:
     """Bring q, or v, onto the constraints; False if that takes more than a start may be moved."""
-    x, scale, before = vec(ws.v if rates else ws.q, ws.n), vec(ws.scale, ws.n), vec(bg.mass, ws.n)
-    found, place = vec(bg.found, FOUND_SIZE), MOVED_RATES if rates else MOVED
-    for i in range(ws.n):
+    x, scale, before = (
+        vec(workspace.v if rates else workspace.q, workspace.n),
+        vec(workspace.scale, workspace.n),
+        vec(begin.mass, workspace.n),
+    )
+    found, place = vec(begin.found, FOUND_SIZE), MOVED_RATES if rates else MOVED
+    for i in range(workspace.n):
         before[i] = x[i]
     found[place] = -1.0
-    if not meet(ws, rates):
+    if not meet(workspace, rates):
         return False
     found[place], found[WHO] = 0.0, 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         moved = abs(x[i] - before[i]) / (scale[i] * level)
         if not (moved <= found[place] or np.isnan(found[place])):
             found[place], found[WHO] = moved, i
-    return bool(found[place] <= vec(bg.numbers, BEGIN_SIZE)[START_TOLERANCE])
+    return bool(found[place] <= vec(begin.numbers, BEGIN_SIZE)[START_TOLERANCE])
 
 
 @internal
-def _accelerate(ws: Any) -> bool:
+def _accelerate(workspace: Any) -> bool:
     """Accelerations, multipliers and rates of the work accounts."""
-    if solve_accelerations(ws) != OK:
+    if solve_accelerations(workspace) != OK:
         return False
-    evaluate_power(ws)
-    a, aux = vec(ws.a, ws.n_ext), vec(ws.aux, ws.n_ext)
-    for i in range(ws.n_ext):
+    evaluate_power(workspace)
+    a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
+    for i in range(workspace.n_ext):
         aux[i] = a[i]
     return True
 
 
 @internal
-def _find_touching(bg: Any, dr: Any, ws: Any) -> int:
+def _find_touching(begin: Any, drive: Any, workspace: Any) -> int:
     """Contacts that touch at the start are pending."""
-    rows, law = ivec(ws.contact_rows, ws.n_contacts), ivec(dr.law, ws.n_contacts)
-    pending, scale = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext)
-    phi, phid, phidd = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
-    for k in range(ws.n_contacts):
+    rows, law = ivec(workspace.contact_rows, workspace.n_contacts), ivec(drive.law, workspace.n_contacts)
+    pending, scale = ivec(drive.pending, workspace.n_contacts), vec(workspace.row_scale, workspace.m_ext)
+    phi, phid, phidd = (
+        vec(workspace.phi, workspace.m_ext),
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.phidd, workspace.m_ext),
+    )
+    for k in range(workspace.n_contacts):
         row, force = rows[k], law[k] == FORCE
-        gap, most = phi[row], START_OVERLAP * (position_level(ws) * scale[row])
+        gap, most = phi[row], START_OVERLAP * (position_level(workspace) * scale[row])
         if gap < -most and not force:
-            vec(bg.found, FOUND_SIZE)[WHO] = k
+            vec(begin.found, FOUND_SIZE)[WHO] = k
             return OVERLAPS
         if gap > most:
             continue
-        rate, still = phid[row], RATE_ROUNDING * rate_size(ws, k)
+        rate, still = phid[row], RATE_ROUNDING * rate_size(workspace, k)
         touches = rate <= still
         if force:
             touches = gap < -most or rate < -still
             if not touches and rate <= still:
-                if not _accelerate(ws):
+                if not _accelerate(workspace):
                     return NO_START
                 touches = phidd[row] < 0.0
         pending[k] = 1 if touches else 0
@@ -144,30 +148,34 @@ def _find_touching(bg: Any, dr: Any, ws: Any) -> int:
 
 
 @internal
-def _begin_forces(dr: Any, ev: Any, ws: Any, ms: Any, lc: Any) -> int:
+def _begin_forces(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Pending contacts with force laws act from the start; the others are left pending."""
-    pending, law, kept = ivec(dr.pending, ws.n_contacts), ivec(dr.law, ws.n_contacts), np.zeros(ws.n_contacts)
+    pending, law, kept = (
+        ivec(drive.pending, workspace.n_contacts),
+        ivec(drive.law, workspace.n_contacts),
+        np.zeros(workspace.n_contacts),
+    )
     any_force = False
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if pending[k] != 0 and law[k] == FORCE:
             any_force = True
         elif pending[k] != 0:
             kept[k] = 1.0
             pending[k] = 0
-    status = int(begin_pending_forces(dr, ev, ws, ms, lc)) if any_force else SETTLED
-    for k in range(ws.n_contacts):
+    status = int(begin_pending_forces(drive, instant, workspace, method, loop)) if any_force else SETTLED
+    for k in range(workspace.n_contacts):
         pending[k] = 1 if kept[k] != 0.0 else 0
     return status
 
 
 @internal
-def _first_step(ws: Any, longest: float) -> float:
+def _first_step(workspace: Any, longest: float) -> float:
     """A step in which nothing moves by more than a hundredth of its scale; error control takes it from there."""
-    v, a, scale = vec(ws.v, ws.n), vec(ws.a, ws.n), vec(ws.scale, ws.n)
+    v, a, scale = vec(workspace.v, workspace.n), vec(workspace.a, workspace.n), vec(workspace.scale, workspace.n)
     speed, acceleration = 0.0, 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         speed, acceleration = max(speed, abs(v[i]) / scale[i]), max(acceleration, abs(a[i]) / scale[i])
-    guess = 0.1 * (1.0 / vec(ws.control, CONTROL_SIZE)[RATE_SCALE])
+    guess = 0.1 * (1.0 / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
     if speed > 0.0:
         guess = min(guess, 0.01 / speed)
     if acceleration > 0.0:
@@ -176,8 +184,8 @@ def _first_step(ws: Any, longest: float) -> float:
 
 
 @internal
-def new_history(ws: Any, ms: Any, lc: Any) -> None:
+def new_history(workspace: Any, method: Any, loop: Any) -> None:
     """A history that begins at the current point."""
-    evaluate_residuals(ws)
-    restart(ws, ms)
-    remember(ws, lc)
+    evaluate_residuals(workspace)
+    restart(workspace, method)
+    remember(workspace, loop)

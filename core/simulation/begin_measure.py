@@ -44,109 +44,130 @@ from .settings import SPEEDS as SPEED_SHARE
 
 
 @internal
-def place(bg: Any, ws: Any) -> None:
+def place(begin: Any, workspace: Any) -> None:
     """The start as it is given, at rest in accelerations; coordinates with a driver where that says."""
-    q, v, a, lam = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext), vec(ws.lam, ws.m_ext)
-    q0, v0 = vec(bg.q0, ws.n), vec(bg.v0, ws.n)
-    for i in range(ws.n_ext):
-        q[i] = q0[i] if i < ws.n else 0.0
-        v[i] = v0[i] if i < ws.n else 0.0
+    q, v, a, lam = (
+        vec(workspace.q, workspace.n_ext),
+        vec(workspace.v, workspace.n_ext),
+        vec(workspace.a, workspace.n_ext),
+        vec(workspace.lam, workspace.m_ext),
+    )
+    q0, v0 = vec(begin.q0, workspace.n), vec(begin.v0, workspace.n)
+    for i in range(workspace.n_ext):
+        q[i] = q0[i] if i < workspace.n else 0.0
+        v[i] = v0[i] if i < workspace.n else 0.0
         a[i] = 0.0
-    for i in range(ws.m_ext):
+    for i in range(workspace.m_ext):
         lam[i] = 0.0
-    vec(ws.t, 1)[0] = vec(bg.numbers, BEGIN_SIZE)[T0]
-    if bg.n_placed > 0:
-        evaluate_residuals(ws)
-        placed, phi, phid = imat(bg.placed, bg.n_placed, 2), vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
-        for k in range(bg.n_placed):
+    vec(workspace.t, 1)[0] = vec(begin.numbers, BEGIN_SIZE)[T0]
+    if begin.n_placed > 0:
+        evaluate_residuals(workspace)
+        placed, phi, phid = (
+            imat(begin.placed, begin.n_placed, 2),
+            vec(workspace.phi, workspace.m_ext),
+            vec(workspace.phid, workspace.m_ext),
+        )
+        for k in range(begin.n_placed):
             q[placed[k, 0]] -= phi[placed[k, 1]]
             v[placed[k, 0]] -= phid[placed[k, 1]]
 
 
 @internal
-def measure(bg: Any, dr: Any, ws: Any) -> int:
+def measure(begin: Any, drive: Any, workspace: Any) -> int:
     """Scales of the model at the start as it is given, tolerances that are parts of them, and the structure of open
     contacts with pivots in these units: SETTLED, or what memory it takes."""
-    place(bg, ws)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
+    place(begin, workspace)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
     before = counters.copy()
-    root = _measure_scales(bg, dr, ws)
+    root = _measure_scales(begin, drive, workspace)
     counters[:] = before
-    _set_tolerances(bg, ws)
-    return _use_units(ws, root)
+    _set_tolerances(begin, workspace)
+    return _use_units(workspace, root)
 
 
 @internal
-def _measure_scales(bg: Any, dr: Any, ws: Any) -> float:
+def _measure_scales(begin: Any, drive: Any, workspace: Any) -> float:
     """The scales into `control`, those of rows and of work accounts into their arrays; returns the root of the largest
     mass, kg^0.5 m."""
-    n, m, scale, row_scale = ws.n, ws.m_ext - 1, vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
-    sizes, own, internal, found = vec(bg.sizes, m), vec(bg.scale, n), ivec(bg.internal, n), np.zeros(MEASURED)
-    if bg.n_row_sizes > 0:
-        given = vec(bg.row_sizes, m)
+    n, m, scale, row_scale = (
+        workspace.n,
+        workspace.m_ext - 1,
+        vec(workspace.scale, workspace.n),
+        vec(workspace.row_scale, workspace.m_ext),
+    )
+    sizes, own, internal, found = vec(begin.sizes, m), vec(begin.scale, n), ivec(begin.internal, n), np.zeros(MEASURED)
+    if begin.n_row_sizes > 0:
+        given = vec(begin.row_sizes, m)
         for i in range(m):
             sizes[i] = given[i]
     else:
-        measure_rows(ws, scale, sizes)
+        measure_rows(workspace, scale, sizes)
     for i in range(m):
         row_scale[i] = sizes[i]
     for i in range(n):
         # the rate of an internal state is no acceleration, its unit mass no mass
         own[i] = 0.0 if internal[i] != 0 else scale[i]
-    mass, later = vec(bg.mass, n), vec(bg.later, _later_times(bg, dr))
+    mass, later = vec(begin.mass, n), vec(begin.later, _later_times(begin, drive))
     for i in range(n):
         mass[i] = 0.0
-    measure_motion(ws, own, vec(bg.usual_v0, n), later, bg.m_joints, mass, found)
+    measure_motion(workspace, own, vec(begin.usual_v0, n), later, begin.m_joints, mass, found)
     # all at rest without loads: what vibrates gives the time
     square = found[SQUARE] if found[SQUARE] != 0.0 else found[STIFFEST]
     rate = np.sqrt(square) if square != 0.0 else 1.0
     heaviest = found[HEAVIEST] if found[HEAVIEST] != 0.0 else 1.0
     energy = found[FOUND_WORK] if found[FOUND_WORK] != 0.0 else heaviest * (rate * rate)
-    control = vec(ws.control, CONTROL_SIZE)
+    control = vec(workspace.control, CONTROL_SIZE)
     control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, found[STIFFEST]
-    work, given = vec(ws.work_scale, ws.n_ext), vec(bg.work_sizes, ws.n_ext)
-    for i in range(ws.n_ext):
+    work, given = vec(workspace.work_scale, workspace.n_ext), vec(begin.work_sizes, workspace.n_ext)
+    for i in range(workspace.n_ext):
         work[i] = WORK * energy
-    rows, accounts = ivec(ws.contact_rows, ws.n_contacts), ivec(dr.impulse_account, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    rows, accounts = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        ivec(drive.impulse_account, workspace.n_contacts),
+    )
+    for k in range(workspace.n_contacts):
         work[accounts[k]] = WORK * energy / (rate * row_scale[rows[k]])
-    for i in range(ws.n_ext):
+    for i in range(workspace.n_ext):
         if given[i] > 0.0:
             work[i] = given[i]
     return float(np.sqrt(heaviest))
 
 
 @internal
-def _use_units(ws: Any, root: float) -> int:
+def _use_units(workspace: Any, root: float) -> int:
     """Units that make M and Phi_q numbers of about 1, and a structure with them."""
-    b = building_at(ws.building)
-    units, scale, row_scale = vec(b.units, ws.n + ws.m_ext), vec(ws.scale, ws.n), vec(ws.row_scale, ws.m_ext)
-    for i in range(ws.n):
+    b = building_at(workspace.building)
+    units, scale, row_scale = (
+        vec(b.units, workspace.n + workspace.m_ext),
+        vec(workspace.scale, workspace.n),
+        vec(workspace.row_scale, workspace.m_ext),
+    )
+    for i in range(workspace.n):
         units[i] = scale[i] / root
-    for i in range(ws.m_ext):
-        units[ws.n + i] = root / row_scale[i]
-    places, wanted = ivec(b.structures, b.n_slots), ivec(ws.wanted, ws.n_contacts)
+    for i in range(workspace.m_ext):
+        units[workspace.n + i] = root / row_scale[i]
+    places, wanted = ivec(b.structures, b.n_slots), ivec(workspace.wanted, workspace.n_contacts)
     for i in range(b.n_slots):
         structure_at(places[i]).built = 0
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         wanted[k] = 0
-    return SETTLED if call_engage(ws.engage, ws) == OK else WANT_MEMORY
+    return SETTLED if call_engage(workspace.engage, workspace) == OK else WANT_MEMORY
 
 
 @internal
-def _later_times(bg: Any, dr: Any) -> int:
+def _later_times(begin: Any, drive: Any) -> int:
     """Times after the start at which forces and drivers that rest at first have begun; how many."""
     numbers, later, breakpoints = (
-        vec(bg.numbers, BEGIN_SIZE),
-        vec(bg.later, LATER),
-        vec(dr.breakpoints, dr.n_breakpoints),
+        vec(begin.numbers, BEGIN_SIZE),
+        vec(begin.later, LATER),
+        vec(drive.breakpoints, drive.n_breakpoints),
     )
     t, longest, ahead = numbers[T0], numbers[LONGEST_STEP], 0
-    for i in range(dr.n_breakpoints):
+    for i in range(drive.n_breakpoints):
         ahead += 1 if breakpoints[i] > t else 0
     stride = max(1, (ahead + MOST_TIMES - 1) // MOST_TIMES)
     later[0], count, seen = 0.0, 1, 0
-    for i in range(dr.n_breakpoints):
+    for i in range(drive.n_breakpoints):
         if breakpoints[i] > t:
             if seen % stride == 0:
                 later[count] = breakpoints[i] - t
@@ -164,14 +185,18 @@ def _tolerance(numbers: Any, kind: int, size: float) -> float:
 
 
 @internal
-def _set_tolerances(bg: Any, ws: Any) -> None:
+def _set_tolerances(begin: Any, workspace: Any) -> None:
     """Absolute tolerances, in parts of the scales or as they are given, and how exactly constraints are to be met."""
-    numbers, control, scale = vec(bg.numbers, BEGIN_SIZE), vec(ws.control, CONTROL_SIZE), vec(ws.scale, ws.n)
-    internal, angle = ivec(bg.internal, ws.n), ivec(bg.angle, ws.n)
-    atol_q, atol_v = vec(ws.atol_q, ws.n), vec(ws.atol_v, ws.n)
+    numbers, control, scale = (
+        vec(begin.numbers, BEGIN_SIZE),
+        vec(workspace.control, CONTROL_SIZE),
+        vec(workspace.scale, workspace.n),
+    )
+    internal, angle = ivec(begin.internal, workspace.n), ivec(begin.angle, workspace.n)
+    atol_q, atol_v = vec(workspace.atol_q, workspace.n), vec(workspace.atol_v, workspace.n)
     rate, length, given = control[RATE_SCALE], numbers[LENGTH], numbers[NEWTON_TOLERANCE]
     fixed, finest = numbers[STEP] > 0.0, 1.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         # the state is the velocity of an internal coordinate, and a length; a tolerance as large as what it is for
         # would let all pass
         size_q = length / rate if internal[i] != 0 else scale[i]

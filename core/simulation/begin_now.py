@@ -38,95 +38,98 @@ exchange_at = record_view(from_dtype(EXCHANGE))
 
 
 @compiled
-def place_now(bg: Any) -> None:
+def place_now(begin: Any) -> None:
     """`place`, for Python."""
-    place(bg, workspace_at(drive_at(bg.drive).workspace))
+    place(begin, workspace_at(drive_at(begin.drive).workspace))
 
 
 @compiled
-def measure_now(bg: Any) -> int:
+def measure_now(begin: Any) -> int:
     """`measure`, for Python."""
-    dr = drive_at(bg.drive)
-    return measure(bg, dr, workspace_at(dr.workspace))
+    drive = drive_at(begin.drive)
+    return measure(begin, drive, workspace_at(drive.workspace))
 
 
 @compiled
-def start_now(bg: Any) -> int:
+def start_now(begin: Any) -> int:
     """`start`, for Python."""
-    dr = drive_at(bg.drive)
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return start(bg, dr, instant_at(dr.instant), ws, ms, lc)
+    drive = drive_at(begin.drive)
+    workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
+    return start(begin, drive, instant_at(drive.instant), workspace, method, loop)
 
 
 @compiled
-def begin_now(bg: Any) -> int:
+def begin_now(begin: Any) -> int:
     """Begin the run anew with the numbers that its tables have now: SETTLED, or why it cannot."""
-    ex, dr = exchange_at(bg.exchange), drive_at(bg.drive)
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    t0 = vec(bg.numbers, BEGIN_SIZE)[T0]
-    _clear(bg, ex, dr, ws, vec(lc.clock, CLOCK_SIZE))
-    _turn(bg, ws, ex.n_inputs, t0)
-    status = measure(bg, dr, ws)
+    exchange, drive = exchange_at(begin.exchange), drive_at(begin.drive)
+    workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
+    t0 = vec(begin.numbers, BEGIN_SIZE)[T0]
+    _clear(begin, exchange, drive, workspace, vec(loop.clock, CLOCK_SIZE))
+    _turn(begin, workspace, exchange.n_inputs, t0)
+    status = measure(begin, drive, workspace)
     if status == SETTLED:
-        status = start(bg, dr, instant_at(dr.instant), ws, ms, lc)
+        status = start(begin, drive, instant_at(drive.instant), workspace, method, loop)
     if status != SETTLED:
         return status
-    if query(ws, ms, t0) != OK:
+    if query(workspace, method, t0) != OK:
         return NO_START
-    sample = vec(ex.sample, ex.sample_length)
-    call_sample(dr.write_sample, ws, sample)
-    energy = sample[bg.energies] + sample[bg.energies + 1] + sample[bg.energies + 2]
-    vec(ex.times, TIMES_SIZE)[INITIAL_ENERGY] = energy
-    if is_due(dr, ws):
-        status = call_settle(dr.settle, dr)
+    sample = vec(exchange.sample, exchange.sample_length)
+    call_sample(drive.write_sample, workspace, sample)
+    energy = sample[begin.energies] + sample[begin.energies + 1] + sample[begin.energies + 2]
+    vec(exchange.times, TIMES_SIZE)[INITIAL_ENERGY] = energy
+    if is_due(drive, workspace):
+        status = call_settle(drive.settle, drive)
     else:
-        new_history(ws, ms, lc)
-    _count_from_here(dr, t0)
+        new_history(workspace, method, loop)
+    _count_from_here(drive, t0)
     return status
 
 
 @internal
-def _clear(bg: Any, ex: Any, dr: Any, ws: Any, clock: Any) -> None:
+def _clear(begin: Any, exchange: Any, drive: Any, workspace: Any, clock: Any) -> None:
     """As before a run begins, but for the longest step and the inputs, which are numbers of the model."""
-    longest, t0 = clock[MAX_STEP], vec(bg.numbers, BEGIN_SIZE)[T0]
-    inputs, kept = mat(ws.inputs, ex.n_inputs, INPUT_SIZE), mat(ex.before, ex.n_inputs, INPUT_SIZE)
-    for k in range(ex.n_inputs):
+    longest, t0 = clock[MAX_STEP], vec(begin.numbers, BEGIN_SIZE)[T0]
+    inputs, kept = (
+        mat(workspace.inputs, exchange.n_inputs, INPUT_SIZE),
+        mat(exchange.before, exchange.n_inputs, INPUT_SIZE),
+    )
+    for k in range(exchange.n_inputs):
         for i in range(INPUT_SIZE):
             kept[k, i] = inputs[k, i]
-    state, blank = ivec(bg.state, bg.n_blank), ivec(bg.blank, bg.n_blank)
-    for i in range(bg.n_blank):
+    state, blank = ivec(begin.state, begin.n_blank), ivec(begin.blank, begin.n_blank)
+    for i in range(begin.n_blank):
         state[i] = blank[i]
     clock[MAX_STEP] = longest
-    for k in range(ex.n_inputs):
+    for k in range(exchange.n_inputs):
         for i in range(INPUT_SIZE):
             inputs[k, i] = kept[k, i]
-    vec(dr.goals, GOALS_SIZE)[HANDLED_AT] = np.nan
-    ivec(dr.counts, COUNTS_SIZE)[EVENTS] = 0
-    pending = ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    vec(drive.goals, GOALS_SIZE)[HANDLED_AT] = np.nan
+    ivec(drive.counts, COUNTS_SIZE)[EVENTS] = 0
+    pending = ivec(drive.pending, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         pending[k] = 0
-    times = vec(ex.times, TIMES_SIZE)
+    times = vec(exchange.times, TIMES_SIZE)
     times[NOW], times[GOAL], times[LAST_CHANGE], times[INTERVAL] = t0, t0, t0, np.inf
-    _count_from_here(dr, t0)
+    _count_from_here(drive, t0)
 
 
 @internal
-def _turn(bg: Any, ws: Any, n_inputs: int, t0: float) -> None:
+def _turn(begin: Any, workspace: Any, n_inputs: int, t0: float) -> None:
     """Angles at the start with the whole turns that drivers say at this time; as `start_angle3d.py` has it, bit for
     bit."""
-    turned, numbers = imat(bg.turned, bg.n_turned, 2), vec(bg.turn_numbers, bg.n_turn_numbers)
-    for k in range(bg.n_turned):
+    turned, numbers = imat(begin.turned, begin.n_turned, 2), vec(begin.turn_numbers, begin.n_turn_numbers)
+    for k in range(begin.n_turned):
         at = turned[k, 1]
-        said, _, _ = evaluate_signal(numbers, vec(ws.inputs, INPUT_SIZE * n_inputs), at + SIGNAL, t0)
+        said, _, _ = evaluate_signal(numbers, vec(workspace.inputs, INPUT_SIZE * n_inputs), at + SIGNAL, t0)
         seen = numbers[at + SIGN] * (said + numbers[at + MORE] - numbers[at + LESS])
         angle = numbers[at + ANGLE]
         vec(turned[k, 0], 1)[0] = angle + WHOLE_TURN * np.rint((seen - angle) / WHOLE_TURN)
 
 
 @internal
-def _count_from_here(dr: Any, t0: float) -> None:
+def _count_from_here(drive: Any, t0: float) -> None:
     """Counters and the guard against endless events begin."""
-    counts, guard = ivec(dr.counts, COUNTS_SIZE), vec(dr.guard, GUARD_SIZE)
+    counts, guard = ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
     for i in range(COUNTS_SIZE):
         if i != EVENTS:
             counts[i] = 0

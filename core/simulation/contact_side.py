@@ -20,7 +20,7 @@ from ..events.records import SETTLED, WANT_MEMORY, WANT_ROOM
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
-from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, IMPLIED, MODE, OF_FIRST, OF_NORMAL, OF_SECOND, SLIDE, STICKS
+from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, OF_FIRST, OF_NORMAL, OF_SECOND, STICKS, contact_memories
 from ..state.run_records import HANDLED, HERE
 from ..state.workspace_records import OK
 from .drive_record import Drive
@@ -45,9 +45,9 @@ class ContactSide:
     scales: Scales
 
     @property
-    def memory(self) -> NDArray[np.float64]:
-        """Contact memories, one row a contact."""
-        return self.workspace.arrays["memory"]
+    def memory(self) -> Any:
+        """Contact memories, (contacts,) CONTACT_MEMORY."""
+        return contact_memories(self.workspace.arrays["memory"])
 
     @property
     def t_internal(self) -> float:
@@ -105,7 +105,7 @@ class ContactSide:
 
     def use_modes(self, accelerations: bool = True) -> None:
         """Take the structure of the present modes; solve for (a, lam) unless told not to."""
-        modes = self.memory[: len(self.assembly.contacts), MODE]
+        modes = self.memory.mode[: len(self.assembly.contacts)]
         closed = frozenset(int(k) for k in np.flatnonzero(modes == CLOSED))
         engaged = closed | {int(k) for k in np.flatnonzero(modes == ACTIVE)}
         sticking, implied = frozenset(self._sticking(closed)), frozenset(self._implied(closed))
@@ -120,7 +120,7 @@ class ContactSide:
     def _sticking(self, closed: Collection[int]) -> Iterator[int]:
         """Those that stick, as `tables/switch.codes_of` takes them."""
         for k in closed:
-            contact, slide = self.assembly.contacts[k], self.memory[k, SLIDE]
+            contact, slide = self.assembly.contacts[k], self.memory.slide_mode[k]
             if contact.coulomb is not None and slide in (STICKS, AT_LIMIT):
                 yield k
                 if contact.tangents > 1 and slide == STICKS:
@@ -130,7 +130,7 @@ class ContactSide:
         """Their rows that others imply, as `tables/switch.codes_of` takes them."""
         for k in closed:
             for of, bit in enumerate((OF_NORMAL, OF_FIRST, OF_SECOND)):
-                if int(self.memory[k, IMPLIED]) & bit:
+                if int(self.memory.implied_rows[k]) & bit:
                     yield k + of * len(self.assembly.contacts)
 
     def note_redundant(self) -> None:

@@ -12,8 +12,8 @@ from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..event_detection.roots import NEAREST
 from ..events import Event
+from ..events.impact_law_codes import code_of
 from ..events.instant import Instant
-from ..events.laws import code_of
 from ..events.progress import Progress
 from ..events.records import SETTLED
 from ..events.report import MOST_EVENTS

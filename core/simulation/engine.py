@@ -16,7 +16,6 @@ from ..assembly.scales import Scales
 from ..assembly.workspace import Workspace
 from ..compiled.jit import address_of
 from ..compiled.notices import compile_notices
-from ..description import Model
 from ..errors import CallbackError, ModelError, SimulationError
 from ..event_detection.crossings import remember
 from ..event_detection.dense_output import query
@@ -25,19 +24,13 @@ from ..events.progress import Progress
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
+from ..multibody_model import Model
 from ..recovery.near_singular import smooth_query, strained
 from ..stage import OUTER_LOOPS
 from ..stage.corotating import solve_spinning_stage
 from ..state.method_records import step_address
 from ..state.run_records import HANDLED, HANDLED_AT, HERE
-from ..state.workspace_records import (
-    FACTOR_AGE,
-    MAX_OUTER,
-    OK,
-    OUTER_LOOP,
-    REANALYZE,
-    STAGE_SIGNATURE,
-)
+from ..state.workspace_records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, STAGE_SIGNATURE
 from ..time_loop.sample import write_sample
 from ..tolerances import DEFAULT_ATOL
 from .beginning import Beginning
@@ -296,14 +289,14 @@ class Engine(ContactSide):
 
     def sample(self) -> NDArray[np.float64]:
         """All numbers at the present time `t`, as one row (see `sample.py`)."""
-        ws = self.workspace.record
+        workspace = self.workspace.record
         row = np.zeros(self.buffer.shape[1])
         try:  # not `user_errors`: a context manager costs as much as the query, and samples are taken at every point
             status = self.query()
             if strained(self):
                 status = smooth_query(self, status)
             if status == OK:
-                write_sample(ws, row)
+                write_sample(workspace, row)
         except CallbackError:
             raise _own_error(self.assembly) from None
         if status != OK:
@@ -317,7 +310,7 @@ class Engine(ContactSide):
 
     def query(self) -> int:
         """Let the present time `t`, which is no later than the newest row, be that of the workspace's point."""
-        ws, ms = self.workspace.record, self._method.record
-        while (status := int(query(ws, ms, self.t))) == REANALYZE:
+        workspace, method = self.workspace.record, self._method.record
+        while (status := int(query(workspace, method, self.t))) == REANALYZE:
             self.workspace.give_room()
         return status

@@ -17,7 +17,6 @@ from ..compiled import types
 from ..compiled.jit import address_of, compiled, compiled_unlocked, internal
 from ..compiled.records import ArrayRecord
 from ..compiled.views import ivec, mat, vec
-from ..description import Model
 from ..errors import ModelError
 from ..event_detection.dense_output import query, query_motion
 from ..events.event_handling import begin_anew
@@ -26,6 +25,7 @@ from ..events.moved_surfaces import find_moved
 from ..events.records import instant_at
 from ..methods.history import history_time, recall
 from ..model.signals import INPUT_SIZE
+from ..multibody_model import Model
 from ..rounding import PUNCTUAL, SAME_INPUT
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
@@ -71,22 +71,25 @@ READ = 202
 
 
 @internal
-def _input_changes(ex: Any, ws: Any) -> int:
+def _input_changes(exchange: Any, workspace: Any) -> int:
     """How many inputs are to change; -1 if one is no finite number."""
-    wanted, count, t = vec(ex.inputs, ex.n_inputs), 0, vec(ex.times, TIMES_SIZE)[NOW]
-    for k in range(ex.n_inputs):
+    wanted, count, t = vec(exchange.inputs, exchange.n_inputs), 0, vec(exchange.times, TIMES_SIZE)[NOW]
+    for k in range(exchange.n_inputs):
         if not np.isfinite(wanted[k]):
             return -1
-        if not _goes_on(ex, ws, k, t):
+        if not _goes_on(exchange, workspace, k, t):
             count += 1
     return count
 
 
 @internal
-def _goes_on(ex: Any, ws: Any, k: int, t: float) -> bool:
+def _goes_on(exchange: Any, workspace: Any, k: int, t: float) -> bool:
     """Whether input k does at time t what is wanted, anyway (`inputs.py`)."""
-    row, rates = mat(ws.inputs, ex.n_inputs, INPUT_SIZE)[k], mat(ex.rates, ex.n_inputs, RATES_SIZE)[k]
-    value, first, second = vec(ex.inputs, ex.n_inputs)[k], rates[FIRST], rates[SECOND]
+    row, rates = (
+        mat(workspace.inputs, exchange.n_inputs, INPUT_SIZE)[k],
+        mat(exchange.rates, exchange.n_inputs, RATES_SIZE)[k],
+    )
+    value, first, second = vec(exchange.inputs, exchange.n_inputs)[k], rates[FIRST], rates[SECOND]
     if row[1] == 0.0 and row[2] == 0.0:
         return value == row[0] and first == 0.0 and second == 0.0
     x = t - row[3]
@@ -100,44 +103,44 @@ def _goes_on(ex: Any, ws: Any, k: int, t: float) -> bool:
 
 
 @internal
-def _change_inputs(ex: Any, ws: Any, ms: Any, lc: Any, decline: bool) -> bool:
+def _change_inputs(exchange: Any, workspace: Any, method: Any, loop: Any, decline: bool) -> bool:
     """Let the inputs take the values that are wanted, and start anew from now, as `restart_here` does; False, with the
     inputs as they were, if that takes more; `decline`: if it makes contacts pending, too."""
-    dr = drive_at(ex.drive)
-    ev = instant_at(dr.instant)
-    times = vec(ex.times, TIMES_SIZE)
-    wanted, n = vec(ex.inputs, ex.n_inputs), ex.n_inputs
-    rows, before = mat(ws.inputs, n, INPUT_SIZE), mat(ex.before, n, INPUT_SIZE)
-    rates = mat(ex.rates, n, RATES_SIZE)
-    t, newest = times[NOW], history_time(ms, 0)
+    drive = drive_at(exchange.drive)
+    instant = instant_at(drive.instant)
+    times = vec(exchange.times, TIMES_SIZE)
+    wanted, n = vec(exchange.inputs, exchange.n_inputs), exchange.n_inputs
+    rows, before = mat(workspace.inputs, n, INPUT_SIZE), mat(exchange.before, n, INPUT_SIZE)
+    rates = mat(exchange.rates, n, RATES_SIZE)
+    t, newest = times[NOW], history_time(method, 0)
     # the motion up to now is that of the inputs up to now: velocities of surfaces would be met with the new ones
     if t == newest:
-        recall(ws, ms, 0)
+        recall(workspace, method, 0)
         status = OK
     else:
-        status = call_query(ex.query, ws, ms, t)
-        vec(ws.t, 1)[0] = t
+        status = call_query(exchange.query, workspace, method, t)
+        vec(workspace.t, 1)[0] = t
     for k in range(n):
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
-        if not _goes_on(ex, ws, k, t):
+        if not _goes_on(exchange, workspace, k, t):
             rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST], rates[k, SECOND]
             # since when does not matter to what stays as it is
             rows[k, INPUT_SIZE - 1] = t if rows[k, 1] != 0.0 or rows[k, 2] != 0.0 else 0.0
     if status == OK:
-        status = call_accelerations(ex.accelerations, ws)
-    unsettled, some = ivec(ev.unsettled, ws.n_contacts), False
+        status = call_accelerations(exchange.accelerations, workspace)
+    unsettled, some = ivec(instant.unsettled, workspace.n_contacts), False
     if status == OK:
-        some = find_unsettled(ev, ws, unsettled)
-        some = find_moved(ws, ms, unsettled) or some
+        some = find_unsettled(instant, workspace, unsettled)
+        some = find_moved(workspace, method, unsettled) or some
     if status != OK or (some and decline):
         for k in range(n):
             for j in range(INPUT_SIZE):
                 rows[k, j] = before[k, j]
         return False
-    begin_anew(ws, ms, lc)
-    pending = ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    begin_anew(workspace, method, loop)
+    pending = ivec(drive.pending, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         # what was to happen later than now will not
         pending[k] = max(pending[k] if t == newest else 0, unsettled[k])
     if t > times[LAST_CHANGE]:
@@ -155,35 +158,35 @@ def _stop(times: Any) -> float:
 
 
 @compiled_unlocked
-def exchange(ex: Any) -> int:
+def exchange(exchange: Any) -> int:
     """Set the inputs, go to the goal, read the channels."""
-    ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
-    changes, dr = _input_changes(ex, ws), drive_at(ex.drive)
-    if changes < 0 or (changes > 0 and not _change_inputs(ex, ws, ms, lc, True)):
+    workspace, method, loop = workspace_at(exchange.workspace), method_at(exchange.method), loop_at(exchange.loop)
+    changes, drive = _input_changes(exchange, workspace), drive_at(exchange.drive)
+    if changes < 0 or (changes > 0 and not _change_inputs(exchange, workspace, method, loop, True)):
         return DECLINED
-    times = vec(ex.times, TIMES_SIZE)
-    goals, counts = vec(dr.goals, GOALS_SIZE), ivec(dr.counts, COUNTS_SIZE)
-    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), ex.chunk
-    times[FIRST_STEP] = ivec(ws.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
-    code = drive_on(dr, ws, ms, lc, False)
+    times = vec(exchange.times, TIMES_SIZE)
+    goals, counts = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE)
+    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), exchange.chunk
+    times[FIRST_STEP] = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
+    code = drive_on(drive, workspace, method, loop, False)
     if code != REACHED:
         return code
-    return READ if ex.read != 0 and read_at_goal(ex, ws, ms) else ARRIVED
+    return READ if exchange.read != 0 and read_at_goal(exchange, workspace, method) else ARRIVED
 
 
 @compiled
-def tell(ex: Any) -> bool:
+def tell(exchange: Any) -> bool:
     """Set the inputs, and nothing else; False, with nothing changed, if that takes Python. Contacts whose mode does not
     fit them are pending then."""
-    ws, ms, lc = workspace_at(ex.workspace), method_at(ex.method), loop_at(ex.loop)
-    changes = _input_changes(ex, ws)
-    return changes == 0 or (changes > 0 and _change_inputs(ex, ws, ms, lc, False))
+    workspace, method, loop = workspace_at(exchange.workspace), method_at(exchange.method), loop_at(exchange.loop)
+    changes = _input_changes(exchange, workspace)
+    return changes == 0 or (changes > 0 and _change_inputs(exchange, workspace, method, loop, False))
 
 
 @compiled
-def read(ex: Any) -> bool:
+def read(exchange: Any) -> bool:
     """Read the channels at the goal, which is no later than the newest row; False if they are not to be had."""
-    return read_at_goal(ex, workspace_at(ex.workspace), method_at(ex.method))
+    return read_at_goal(exchange, workspace_at(exchange.workspace), method_at(exchange.method))
 
 
 class Exchange:
@@ -244,17 +247,23 @@ def possible(sim: "Simulation") -> bool:
 
 def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: bool) -> NDArray[np.float64] | None:
     """See `Simulation.exchange`."""
-    ex, now, times = sim.crossing, sim.t, sim.input_times
-    if ex is None or sim.pending or sim.progress or not now <= t < math.inf or len(inputs) != len(ex.wanted):
+    crossing, now, times = sim.crossing, sim.t, sim.input_times
+    if (
+        crossing is None
+        or sim.pending
+        or sim.progress
+        or not now <= t < math.inf
+        or len(inputs) != len(crossing.wanted)
+    ):
         _at_length(sim, inputs, t)
         return None
-    clock = ex.clock
-    ex.wanted[:] = inputs
+    clock = crossing.clock
+    crossing.wanted[:] = inputs
     clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
     clock[LAST_CHANGE], clock[INTERVAL] = times
-    if read != ex.reads:
-        ex.set_reads(read)
-    code = exchange(ex.record)
+    if read != crossing.reads:
+        crossing.set_reads(read)
+    code = exchange(crossing.record)
     if code == DECLINED:
         _at_length(sim, inputs, t)
         return None
@@ -267,7 +276,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     sim.t = float(t)
     if code != READ:
         return None
-    return ex.channels.copy()
+    return crossing.channels.copy()
 
 
 def _at_length(sim: "Simulation", inputs: Sequence[float], t: float) -> None:

@@ -11,16 +11,7 @@ from ..assembly.assembly import Assembly, ContactInfo
 from ..assembly.sample_layout import SampleLayout
 from ..compiled.image import twin
 from ..model.channels import Channel, Enumeration
-from ..model.derived import (
-    CHANNELS,
-    FIRST_CHANNEL,
-    FIRST_PLACE,
-    NOT_KNOWN,
-    PLACES,
-    Derived,
-    DerivedTable,
-    Places,
-)
+from ..model.derived import CHANNELS, FIRST_CHANNEL, FIRST_PLACE, NOT_KNOWN, PLACES, Derived, DerivedTable, Places
 from ..model.units import conjugate, per_second, times_second
 from ..state.modes import ACTIVE, CLOSED, MODE_NAMES
 from .exchange_record import ENERGIES, FORCES, MOTION, OF_GROUPS

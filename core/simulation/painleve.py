@@ -15,7 +15,7 @@ from ..linalg import SingularMatrixError
 from ..methods.history import recall
 from ..rounding import DIRECTION_RANK
 from ..stage.joints import factor_joints, solve_joints
-from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE, RATIO, SLIDE
+from ..state.modes import AT_LIMIT, CLOSED, IDLE
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -37,7 +37,7 @@ def painleve(name: str, t: float, mu: float) -> str:
 def sliding_contacts(sim: "Engine") -> list[int]:
     """Closed contacts whose friction is in proportion to their normal force because they slide."""
     memory = sim.memory
-    slides = (memory[:, MODE] == CLOSED) & (np.abs(memory[:, SLIDE]) == 1.0) & (memory[:, RATIO] != 0.0)
+    slides = (memory.mode == CLOSED) & (np.abs(memory.slide_mode) == 1.0) & (memory.friction_ratio != 0.0)
     return [int(k) for k in np.flatnonzero(slides)]
 
 
@@ -47,15 +47,15 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
     behind that place, its force pulls the gap's acceleration down."""
     workspace, n, sliding, memory = sim.workspace, sim.assembly.n, sliding_contacts(sim), sim.memory
     # constant shares of contacts that others hold are given forces, as for the determinant (`repivoting.py`)
-    held = (memory[:, SLIDE] == IDLE) | (memory[:, SLIDE] == AT_LIMIT)
-    shares = memory[held, RATIO]
-    memory[held, RATIO] = 0.0
+    held = (memory.slide_mode == IDLE) | (memory.slide_mode == AT_LIMIT)
+    shares = memory.friction_ratio[held]
+    memory.friction_ratio[held] = 0.0
     singular = factor_joints(workspace.record) != 0
     if singular:
         with suppress(SingularMatrixError):
             workspace.structure.kkt_query.analyze(workspace.arrays["values"])
             singular = factor_joints(workspace.record) != 0
-    memory[held, RATIO] = shares
+    memory.friction_ratio[held] = shares
     rows, rhs, worst, most = workspace.structure.multiplier_rows, workspace.arrays["rhs"], sliding[0], (False, 0.0)
     for k in sliding:
         row = n + int(np.flatnonzero(rows == sim.assembly.contacts[k].row)[0])
@@ -67,7 +67,7 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
         found = (not rhs[row] < 0.0, abs(float(rhs[row])))
         if found > most:
             worst, most = k, found
-    message = painleve(sim.assembly.contacts[worst].name, sim.t_internal, abs(float(memory[worst, RATIO])))
+    message = painleve(sim.assembly.contacts[worst].name, sim.t_internal, abs(float(memory.friction_ratio[worst])))
     raise SimulationError(message, t=sim.t_internal, loop="contact")
 
 
@@ -76,7 +76,7 @@ def jam(sim: "Engine") -> str | None:
     memory, sliding = sim.memory, sliding_contacts(sim)
     if not sliding or not sim.method_arrays["ring"][1]:
         return None
-    ratio = memory[sliding, RATIO]
+    ratio = memory.friction_ratio[sliding]
     recall(sim.workspace.record, sim._method.record, 0)
     try:
         a, count = sim.inverse_masses(sliding), len(sliding)

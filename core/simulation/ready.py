@@ -8,13 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ..assembly.condition_probe import set_probe
-from ..assembly.evaluate import (
-    constraint_norm,
-    evaluate_energy,
-    evaluate_power,
-    evaluate_residuals,
-    evaluate_tangent,
-)
+from ..assembly.evaluate import constraint_norm, evaluate_energy, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..assembly.levels import force_level, position_level, rate_level
 from ..assembly.partition_building import partition_wanted
 from ..assembly.projection import meet

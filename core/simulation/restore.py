@@ -120,9 +120,9 @@ def _no_state(sim: "Simulation") -> SimulationError:
 
 def go_to_present(sim: "Simulation") -> None:
     """Let the present time `sim.t` be that of the workspace's point. Raises SimulationError where no state is found."""
-    ws, ms = sim.workspace.record, sim._method.record
+    workspace, method = sim.workspace.record, sim._method.record
     if sim.t == sim.t_internal:
-        recall(ws, ms, 0)
+        recall(workspace, method, 0)
     elif sim.query() != OK:
         raise _no_state(sim)
 
@@ -131,7 +131,7 @@ def restart_here(sim: "Simulation", is_present: bool = False) -> None:
     """Start anew from the present time `sim.t`: what was computed beyond it is dropped (an input has changed).
     is_present : the workspace's point is that of the present time already.
     Raises SimulationError where no accelerations fit it."""
-    ws = sim.workspace.record
+    workspace = sim.workspace.record
     if not is_present:
         go_to_present(sim)
     if sim.t != sim.t_internal:
@@ -140,7 +140,7 @@ def restart_here(sim: "Simulation", is_present: bool = False) -> None:
         # the newest row itself, where that is nearer than a step can be: what is due at once is due at this time
         sim.workspace.arrays["t"][0] = sim.t
     # the modes are the same and the structure fits them; only pivots that have degraded call for a new one
-    if solve_accelerations(ws) == OK:
+    if solve_accelerations(workspace) == OK:
         sim.begin_rates()
         sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
     else:

@@ -53,8 +53,8 @@ def input_derivatives(sim: "Simulation", direction: Mapping[str, float]) -> Vect
 
 def _along(sim: "Simulation", seed: Vector, found: Vector) -> None:
     sim.sample()  # the present time becomes the workspace's point
-    ex = sim.outside.record
-    status = along_inputs(ex, seed, found)
+    exchange = sim.outside.record
+    status = along_inputs(exchange, seed, found)
     if status not in (0, UNSOLVED):
         evaluate_joints(sim.workspace.record)
         try:
@@ -66,7 +66,7 @@ def _along(sim: "Simulation", seed: Vector, found: Vector) -> None:
                 loop="outer",
             ) from error
         sim.sample()
-        status = along_inputs(ex, seed, found)
+        status = along_inputs(exchange, seed, found)
     if status != 0:
         raise SimulationError(
             f"no derivatives at t = {sim.t:.9g} s: the mechanism is too near a singular position, or a value is not "

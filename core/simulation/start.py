@@ -17,7 +17,7 @@ from ..assembly.scales import Scales
 from ..errors import ConsistencyError, SimulationError
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..rounding import START_MOVED
-from ..state.modes import ACTIVE, LAID_MASS, MODE
+from ..state.modes import ACTIVE
 from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
 from . import motions
 from .begin import NO_POSITIONS, NO_START, NO_VELOCITIES, OVERLAPS, SINGULAR_START
@@ -144,8 +144,8 @@ def _forget_before(sim: "Engine") -> None:
 
 def _warn_of_laid_contacts(sim: "Engine") -> None:
     """Say which contacts press from the start with a law whose damping refers to a speed that they have not had."""
-    memory, contacts = sim.workspace.arrays["memory"], sim.assembly.contacts
-    laid = [c for c, row in zip(contacts, memory, strict=False) if row[MODE] == ACTIVE and row[LAID_MASS] > 0.0]
+    memory, contacts = sim.memory, sim.assembly.contacts
+    laid = [c for c, row in zip(contacts, memory, strict=False) if row.mode == ACTIVE and row.laid_mass > 0.0]
     if laid:
         logger.warning(
             "%s begin%s without an approach, and the damping of %s refers to one: it is that of the blow which goes as "

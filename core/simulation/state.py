@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 
-FORMAT = "tlismni-state-10"
+FORMAT = "tlismni-state-11"
 TYPES = ("<f8", "<i8")
 
 

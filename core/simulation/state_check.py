@@ -15,7 +15,7 @@ from ..events import Event
 from ..methods.order_selection import MOST_K
 from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
-from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE, MODE_NAMES, SLIDE, STICKS
+from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE_NAMES, STICKS, contact_memories
 from ..state.run_records import (
     A2,
     B1,
@@ -210,12 +210,12 @@ def _check_factorizations(arrays: dict[str, NDArray[Any]], sizes: dict[str, int]
 
 
 def _check_memory(sim: "Simulation", state: State) -> None:
-    memory = state.arrays["memory"][: len(sim.assembly.contacts)]
-    _need("memory", np.isin(memory[:, MODE], list(MODE_NAMES)).all(), f"has modes {memory[:, MODE].tolist()}")
+    memory = contact_memories(state.arrays["memory"])[: len(sim.assembly.contacts)]
+    _need("memory", np.isin(memory.mode, list(MODE_NAMES)).all(), f"has modes {memory.mode.tolist()}")
     in_space = np.array([contact.tangents == 2 for contact in sim.assembly.contacts], dtype=bool)
-    known = np.isin(memory[:, SLIDE], _SLIDES) | (in_space & (memory[:, SLIDE] == AT_LIMIT))
-    _need("memory", bool(known.all()), f"has ways of sliding {memory[:, SLIDE].tolist()}")
-    closed = set(np.flatnonzero(memory[:, MODE] == CLOSED).tolist())
+    known = np.isin(memory.slide_mode, _SLIDES) | (in_space & (memory.slide_mode == AT_LIMIT))
+    _need("memory", bool(known.all()), f"has ways of sliding {memory.slide_mode.tolist()}")
+    closed = set(np.flatnonzero(memory.mode == CLOSED).tolist())
     _need("closed", closed == set(state.facts["closed"]), f"is not what the modes say: {sorted(closed)}")
 
 

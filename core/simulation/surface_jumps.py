@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from ..description import Model
 from ..errors import ModelError
 from ..laws.friction import CoulombFriction
 from ..methods.registry import Formula
 from ..model.signals import InputSignal, Step
+from ..multibody_model import Model
 
 
 def refuse_surface_jumps(system: Any, formula: Formula, method: str) -> None:

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import factor_equations, left_of_sharing, solve_equations
 from ..assembly.evaluate import constraint_norm, evaluate_residuals, evaluate_tangent
 from ..assembly.levels import position_level, rate_level
+from ..assembly.redundant_reactions import factor_equations, left_of_sharing, solve_equations
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
@@ -62,22 +62,22 @@ _USED = 1.0  # age of a factorisation that has been used; there is no partition 
 
 
 @internal
-def _factored(ws: Any, lu_address: int, c_q: float, c_v: float) -> int:
+def _factored(workspace: Any, lu_address: int, c_q: float, c_v: float) -> int:
     """Factor [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] of the current point."""
-    evaluate_tangent(ws, c_q, c_v)
-    status = factor_equations(ws, lu_address)
+    evaluate_tangent(workspace, c_q, c_v)
+    status = factor_equations(workspace, lu_address)
     if status == 2:
         return REANALYZE
-    ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     return OK if status == 0 else SINGULAR
 
 
 @internal
-def refactor_absolute(ws: Any, c_q: float, c_v: float) -> int:
+def refactor_absolute(workspace: Any, c_q: float, c_v: float) -> int:
     """New matrix at the current point."""
-    rate = vec(ws.rate, RATE_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     rate[FACTOR_AGE] = -1.0
-    status = _factored(ws, ws.kkt, c_q, c_v)
+    status = _factored(workspace, workspace.kkt, c_q, c_v)
     if status != OK:
         return status
     rate[FACTOR_AGE], rate[OUTER_RATE] = 0.0, 1.0
@@ -86,115 +86,123 @@ def refactor_absolute(ws: Any, c_q: float, c_v: float) -> int:
 
 
 @internal
-def solve_rows(ws: Any, c_q: float, c_v: float, index: int) -> None:
+def solve_rows(workspace: Any, c_q: float, c_v: float, index: int) -> None:
     """rhs = (da, dlambda) from the residuals of the current point."""
-    n = ws.n
-    rhs = vec(ws.rhs, n + ws.m_act)
-    r, offset = vec(ws.r, n), vec(ws.offset, n)
-    active = ivec(ws.active, ws.m_act)
-    phi, phid, phidd = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext), vec(ws.phidd, ws.m_ext)
-    control = vec(ws.control, CONTROL_SIZE)
+    n = workspace.n
+    rhs = vec(workspace.rhs, n + workspace.m_act)
+    r, offset = vec(workspace.r, n), vec(workspace.offset, n)
+    active = ivec(workspace.active, workspace.m_act)
+    phi, phid, phidd = (
+        vec(workspace.phi, workspace.m_ext),
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.phidd, workspace.m_ext),
+    )
+    control = vec(workspace.control, CONTROL_SIZE)
     alpha, beta = control[STAGE_ALPHA], control[STAGE_BETA]
     for i in range(n):
         rhs[i] = offset[i] - r[i]
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         k = active[i]
         if index == 1:
             moved = 1.0 + 2.0 * alpha * c_v
-            if i < ws.m_held:
+            if i < workspace.m_held:
                 moved += beta * beta * c_q
             rhs[n + i] = -(phidd[k] + 2.0 * alpha * phid[k] + beta * beta * phi[k]) / moved
-        elif index == 2 or i >= ws.m_held:
+        elif index == 2 or i >= workspace.m_held:
             rhs[n + i] = -phid[k] / c_v
         else:
             rhs[n + i] = -phi[k] / c_q
-    left_of_sharing(ws, False)
-    solve(lu_at(ws.kkt), ws.rhs)
+    left_of_sharing(workspace, False)
+    solve(lu_at(workspace.kkt), workspace.rhs)
 
 
 @internal
-def _correct_coordinates(ws: Any, c_q: float, c_v: float) -> float:
+def _correct_coordinates(workspace: Any, c_q: float, c_v: float) -> float:
     """q += -h M^-1 Phi_q^T dmu, what brings Phi(q) to zero beside the acceleration increment just added; its norm.
 
     Called before the residuals are evaluated anew: that increment has moved Phi by -(c_q / c_v) phid.
     """
-    n = ws.n
-    rhs = vec(ws.rhs, n + ws.m_act)
-    active = ivec(ws.active, ws.m_act)
-    phi, phid = vec(ws.phi, ws.m_ext), vec(ws.phid, ws.m_ext)
+    n = workspace.n
+    rhs = vec(workspace.rhs, n + workspace.m_act)
+    active = ivec(workspace.active, workspace.m_act)
+    phi, phid = vec(workspace.phi, workspace.m_ext), vec(workspace.phid, workspace.m_ext)
     for i in range(n):
         rhs[i] = 0.0
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         # along what velocity-level rows allow
-        rhs[n + i] = -phi[active[i]] + c_q / c_v * phid[active[i]] if i < ws.m_held else 0.0
-    solve_equations(ws, ws.kkt_query)
-    q = vec(ws.q, n)
+        rhs[n + i] = -phi[active[i]] + c_q / c_v * phid[active[i]] if i < workspace.m_held else 0.0
+    solve_equations(workspace, workspace.kkt_query)
+    q = vec(workspace.q, n)
     for i in range(n):
         q[i] += rhs[i]
-    return weighted_norm(rhs, vec(ws.weight_q, n), n)
+    return weighted_norm(rhs, vec(workspace.weight_q, n), n)
 
 
 @internal
-def _holds(ws: Any, index: int) -> bool:
+def _holds(workspace: Any, index: int) -> bool:
     """True if the constraints hold that this form solves for at position and velocity level."""
-    if index == 1 or ws.m_act == 0:
+    if index == 1 or workspace.m_act == 0:
         return True
-    control = vec(ws.control, CONTROL_SIZE)
-    bound = CONSTRAINT_SLACK * control[POSITION_TOLERANCE] * position_level(ws)
-    if not constraint_norm(ws, ws.phi) <= bound:
+    control = vec(workspace.control, CONTROL_SIZE)
+    bound = CONSTRAINT_SLACK * control[POSITION_TOLERANCE] * position_level(workspace)
+    if not constraint_norm(workspace, workspace.phi) <= bound:
         return False
-    bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rate_level(ws)
+    bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rate_level(workspace)
     if index == 2:
-        return constraint_norm(ws, ws.phid) <= bound
+        return constraint_norm(workspace, workspace.phid) <= bound
     # positions say all of the others
-    active, phid, row_scale = ivec(ws.active, ws.m_act), vec(ws.phid, ws.m_ext), vec(ws.row_scale, ws.m_ext)
-    for i in range(ws.m_held, ws.m_act):
+    active, phid, row_scale = (
+        ivec(workspace.active, workspace.m_act),
+        vec(workspace.phid, workspace.m_ext),
+        vec(workspace.row_scale, workspace.m_ext),
+    )
+    for i in range(workspace.m_held, workspace.m_act):
         if not abs(phid[active[i]]) <= bound * row_scale[active[i]]:
             return False
     return True
 
 
 @inlined
-def _only_rounding(ws: Any, c_q: float) -> bool:
+def _only_rounding(workspace: Any, c_q: float) -> bool:
     """True if the increment in `rhs` moves q by rounding only: c_v da, which is larger by 2/h, need not vanish then."""
-    rhs, scale = vec(ws.rhs, ws.n), vec(ws.scale, ws.n)
+    rhs, scale = vec(workspace.rhs, workspace.n), vec(workspace.scale, workspace.n)
     largest = 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         largest = max(largest, abs(c_q * rhs[i]) / scale[i])
-    return largest <= ONLY_ROUNDING * position_level(ws)
+    return largest <= ONLY_ROUNDING * position_level(workspace)
 
 
 @internal
-def _iterate(ws: Any, c_q: float, c_v: float, index: int) -> int:
-    control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
+def _iterate(workspace: Any, c_q: float, c_v: float, index: int) -> int:
+    control, rate = vec(workspace.control, CONTROL_SIZE), vec(workspace.rate, RATE_SIZE)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
     tolerance = control[NEWTON_TOLERANCE]
     previous = np.inf
     renewed = 0
     for k in range(int(control[MAX_OUTER])):
-        solve_rows(ws, c_q, c_v, index)
+        solve_rows(workspace, c_q, c_v, index)
         counters[OUTER] += 1
-        norm = increment_norm(ws, c_q, c_v)
-        rounding = index == 3 and _only_rounding(ws, c_q)
-        add_increment(ws, c_q, c_v)
-        if index == 2 and ws.m_act > 0:
-            norm = max(norm, _correct_coordinates(ws, c_q, c_v))
+        norm = increment_norm(workspace, c_q, c_v)
+        rounding = index == 3 and _only_rounding(workspace, c_q)
+        add_increment(workspace, c_q, c_v)
+        if index == 2 and workspace.m_act > 0:
+            norm = max(norm, _correct_coordinates(workspace, c_q, c_v))
         if not np.isfinite(norm):
             return NOT_FINITE
-        evaluate_residuals(ws)
-        if rounding and _holds(ws, index):
+        evaluate_residuals(workspace)
+        if rounding and _holds(workspace, index):
             rate[LAST_OUTER] = k + 1
             return OK
         if k > 0:
             status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
             if status == OUTER_SLOW:
                 renewed += 1
-                status = refactor_absolute(ws, c_q, c_v)
+                status = refactor_absolute(workspace, c_q, c_v)
             if status != OK:
                 return status
         previous = norm
         known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
-        if norm * known / (1.0 - known) <= tolerance and _holds(ws, index):
+        if norm * known / (1.0 - known) <= tolerance and _holds(workspace, index):
             rate[LAST_OUTER] = k + 1
             if k == 0:
                 rate[OUTER_RATE] = known * RATE_GROWTH
@@ -203,43 +211,48 @@ def _iterate(ws: Any, c_q: float, c_v: float, index: int) -> int:
 
 
 @internal
-def solve_absolute(ws: Any, t: float, c_q: float, c_v: float, index: int) -> int:
+def solve_absolute(workspace: Any, t: float, c_q: float, c_v: float, index: int) -> int:
     """Solve one stage from the predicted a, lambda in the workspace; on failure with old matrices once more with new.
 
     `index` says which constraints: 1 Baumgarte's combination, 2 positions and velocities, 3 positions.
     """
-    rate = vec(ws.rate, RATE_SIZE)
-    begin_stage(ws, t, c_q, c_v)
-    if index == 2 and ws.m_act > 0:
+    rate = vec(workspace.rate, RATE_SIZE)
+    begin_stage(workspace, t, c_q, c_v)
+    if index == 2 and workspace.m_act > 0:
         # its direction is part of the formula: always that of the predicted point, however old the other matrix is
-        status = _factored(ws, ws.kkt_query, 0.0, 0.0)
+        status = _factored(workspace, workspace.kkt_query, 0.0, 0.0)
         if status != OK:
             return status
     if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER:
-        status = refactor_absolute(ws, c_q, c_v)
+        status = refactor_absolute(workspace, c_q, c_v)
         if status != OK:
             return status
     fresh = rate[FACTOR_AGE] == 0.0
     rate[FACTOR_AGE] = _USED
-    status = _iterate(ws, c_q, c_v, index)
+    status = _iterate(workspace, c_q, c_v, index)
     if status != OK and not fresh:
-        evaluate_prediction(ws, c_q, c_v)
-        status = refactor_absolute(ws, c_q, c_v)
+        evaluate_prediction(workspace, c_q, c_v)
+        status = refactor_absolute(workspace, c_q, c_v)
         if status != OK:
             return status
-        status = _iterate(ws, c_q, c_v, index)
+        status = _iterate(workspace, c_q, c_v, index)
     if rate[FACTOR_AGE] == 0.0:
         rate[FACTOR_AGE] = _USED
     if index == 2:
-        _measure_correction(ws, c_q)
+        _measure_correction(workspace, c_q)
     return status
 
 
 @internal
-def _measure_correction(ws: Any, c_q: float) -> None:
+def _measure_correction(workspace: Any, c_q: float) -> None:
     """How far h M^-1 Phi_q^T mu has moved the coordinates, in their typical magnitudes."""
-    q, q_star, a, scale = vec(ws.q, ws.n), vec(ws.q_star, ws.n), vec(ws.a, ws.n), vec(ws.scale, ws.n)
+    q, q_star, a, scale = (
+        vec(workspace.q, workspace.n),
+        vec(workspace.q_star, workspace.n),
+        vec(workspace.a, workspace.n),
+        vec(workspace.scale, workspace.n),
+    )
     largest = 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         largest = max(largest, abs(q[i] - q_star[i] - c_q * a[i]) / scale[i])
-    vec(ws.rate, RATE_SIZE)[CORRECTION] = largest
+    vec(workspace.rate, RATE_SIZE)[CORRECTION] = largest

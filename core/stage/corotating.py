@@ -132,12 +132,12 @@ def leave(spin: Any, t: float, q: Any, v: Any, a: Any, i: int) -> None:
 
 
 @internal
-def enter_frame(ws: Any) -> None:
+def enter_frame(workspace: Any) -> None:
     """The workspace's point in the turning frame; that in space is remembered."""
-    n, t = ws.n_ext, vec(ws.t, 1)[0]
-    q, v, a = vec(ws.q, n), vec(ws.v, n), vec(ws.a, n)
-    for k in range(ws.n_spins):
-        i, spin = ivec(ws.spinning, ws.n_spins)[k], mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
+    n, t = workspace.n_ext, vec(workspace.t, 1)[0]
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
         put_four(spin, POINT, four_of(q, i))
         put_four(spin, POINT + 4, four_of(v, i))
         put_four(spin, POINT + 8, four_of(a, i))
@@ -145,19 +145,26 @@ def enter_frame(ws: Any) -> None:
 
 
 @internal
-def leave_frame(ws: Any) -> None:
+def leave_frame(workspace: Any) -> None:
     """The workspace's point in space."""
-    n, t = ws.n_ext, vec(ws.t, 1)[0]
-    for k in range(ws.n_spins):
-        spin = mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
-        leave(spin, t, vec(ws.q, n), vec(ws.v, n), vec(ws.a, n), ivec(ws.spinning, ws.n_spins)[k])
+    n, t = workspace.n_ext, vec(workspace.t, 1)[0]
+    for k in range(workspace.n_spins):
+        spin = mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        leave(
+            spin,
+            t,
+            vec(workspace.q, n),
+            vec(workspace.v, n),
+            vec(workspace.a, n),
+            ivec(workspace.spinning, workspace.n_spins)[k],
+        )
 
 
 @internal
-def _begin_stage(ws: Any, spin: Any, i: int, t: float, c_q: float, c_v: float) -> None:
+def _begin_stage(workspace: Any, spin: Any, i: int, t: float, c_q: float, c_v: float) -> None:
     """q*, v*, the prediction of p'' and the relations between them as they are in space at t."""
-    n = ws.n_ext
-    q_star, v_star, a = vec(ws.q_star, n), vec(ws.v_star, n), vec(ws.a, n)
+    n = workspace.n_ext
+    q_star, v_star, a = vec(workspace.q_star, n), vec(workspace.v_star, n), vec(workspace.a, n)
     put_four(spin, STARS, four_of(q_star, i))
     put_four(spin, STARS + 4, four_of(v_star, i))
     predicted = times_function(spin, rotation_of(spin, t - spin[ANCHOR]), four_of(a, i))
@@ -183,30 +190,30 @@ def _begin_stage(ws: Any, spin: Any, i: int, t: float, c_q: float, c_v: float) -
 
 
 @internal
-def solve_spinning_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_spinning_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve a stage whose q*, v* and predicted a are those of the turning frames, if there are some; so is its
     solution. Powers are those of the solution in space then."""
-    n = ws.n_ext
-    spins, spinning = mat(ws.spin, ws.n_spins, SPIN_SIZE), ivec(ws.spinning, ws.n_spins)
-    for k in range(ws.n_spins):
-        _begin_stage(ws, spins[k], spinning[k], t, c_q, c_v)
-    status = call_stage(ws.plain_stage, ws, t, c_q, c_v)
-    for k in range(ws.n_spins):
-        put_four(vec(ws.q_star, n), spinning[k], four_of(spins[k], STARS))
-        put_four(vec(ws.v_star, n), spinning[k], four_of(spins[k], STARS + 4))
-    if status == OK and ws.n_spins > 0:
-        evaluate_power(ws)
-        enter_frame(ws)
+    n = workspace.n_ext
+    spins, spinning = mat(workspace.spin, workspace.n_spins, SPIN_SIZE), ivec(workspace.spinning, workspace.n_spins)
+    for k in range(workspace.n_spins):
+        _begin_stage(workspace, spins[k], spinning[k], t, c_q, c_v)
+    status = call_stage(workspace.plain_stage, workspace, t, c_q, c_v)
+    for k in range(workspace.n_spins):
+        put_four(vec(workspace.q_star, n), spinning[k], four_of(spins[k], STARS))
+        put_four(vec(workspace.v_star, n), spinning[k], four_of(spins[k], STARS + 4))
+    if status == OK and workspace.n_spins > 0:
+        evaluate_power(workspace)
+        enter_frame(workspace)
     return status
 
 
 @internal
-def add_in_frame(ws: Any, x: Any) -> None:
+def add_in_frame(workspace: Any, x: Any) -> None:
     """What accelerations x (of the workspace or increments of them) move attitudes and their rates beyond c_q x and
     c_v x."""
-    q, v = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext)
-    for k in range(ws.n_spins):
-        i, spin = ivec(ws.spinning, ws.n_spins)[k], mat(ws.spin, ws.n_spins, SPIN_SIZE)[k]
+    q, v = vec(workspace.q, workspace.n_ext), vec(workspace.v, workspace.n_ext)
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
         increment = four_of(x, i)
         of_q = times_function(spin, four_of(spin, OF_Q), increment)
         of_v = times_function(spin, four_of(spin, OF_V), increment)

@@ -14,14 +14,14 @@ from .solver import add_increment, begin_stage
 
 
 @internal
-def solve_explicit_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_explicit_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """(a, lambda) at t, q*, v*; alpha and beta (1/s) stand in `control`, c_q and c_v are zero."""
-    begin_stage(ws, t, c_q, c_v)
-    status = refactor_absolute(ws, c_q, c_v)
+    begin_stage(workspace, t, c_q, c_v)
+    status = refactor_absolute(workspace, c_q, c_v)
     # no later stage takes these factors
-    vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
     if status != OK:
         return status
-    solve_rows(ws, c_q, c_v, 1)
-    add_increment(ws, c_q, c_v)
+    solve_rows(workspace, c_q, c_v, 1)
+    add_increment(workspace, c_q, c_v)
     return OK

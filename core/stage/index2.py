@@ -13,6 +13,6 @@ from .absolute import solve_absolute
 
 
 @internal
-def solve_index2_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_index2_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage; `rate[CORRECTION]` tells how large the term with mu became."""
-    return solve_absolute(ws, t, c_q, c_v, 2)
+    return solve_absolute(workspace, t, c_q, c_v, 2)

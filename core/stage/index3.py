@@ -12,6 +12,6 @@ from .absolute import solve_absolute
 
 
 @internal
-def solve_index3_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_index3_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage."""
-    return solve_absolute(ws, t, c_q, c_v, 3)
+    return solve_absolute(workspace, t, c_q, c_v, 3)

@@ -35,22 +35,22 @@ STRAINED = 8.0  # growth of the condition beyond which the constraints are solve
 
 
 @internal
-def correct_dependent(ws: Any, lu_address: int, m: int, residual_address: int, x_address: int) -> None:
+def correct_dependent(workspace: Any, lu_address: int, m: int, residual_address: int, x_address: int) -> None:
     """x_d -= Phi_qd^-1 residual, of the first m active rows."""
-    active = ivec(ws.active, m)
-    dependent = ivec(ws.dependent, m)
-    residual = vec(residual_address, ws.m_ext)
-    rhs = vec(ws.rhs, m)
+    active = ivec(workspace.active, m)
+    dependent = ivec(workspace.dependent, m)
+    residual = vec(residual_address, workspace.m_ext)
+    rhs = vec(workspace.rhs, m)
     for i in range(m):
         rhs[i] = residual[active[i]]
-    solve(lu_at(lu_address), ws.rhs)
-    x = vec(x_address, ws.n_ext)
+    solve(lu_at(lu_address), workspace.rhs)
+    x = vec(x_address, workspace.n_ext)
     for i in range(m):
         x[dependent[i]] -= rhs[i]
 
 
 @internal
-def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float, part: bool = False) -> int:
+def inner_loop(workspace: Any, lu_address: int, slack: float, acceleration_slack: float, part: bool = False) -> int:
     """Correct q_d, v_d, a_d until the constraints hold to the tolerances times `slack`.
 
     `acceleration_slack` is that of a_d: infinite while the outer loop still moves the accelerations.
@@ -58,24 +58,24 @@ def inner_loop(ws: Any, lu_address: int, slack: float, acceleration_slack: float
     Expects the residuals of the current point, or if `part` only what `evaluate_constraints` leaves; leaves the
     residuals of the corrected one. The tolerances are parts of the levels of q, v, a (`assembly/levels.py`).
     """
-    before = ivec(ws.counters, COUNTERS_SIZE)[INNER]
-    status = OK if ws.m_act == 0 else _meet(ws, lu_address, slack, acceleration_slack)
-    if ws.part_first != 0 and (part or ivec(ws.counters, COUNTERS_SIZE)[INNER] > before):
-        evaluate_residuals(ws)
+    before = ivec(workspace.counters, COUNTERS_SIZE)[INNER]
+    status = OK if workspace.m_act == 0 else _meet(workspace, lu_address, slack, acceleration_slack)
+    if workspace.part_first != 0 and (part or ivec(workspace.counters, COUNTERS_SIZE)[INNER] > before):
+        evaluate_residuals(workspace)
     return status
 
 
 @internal
-def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
+def _meet(workspace: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
     """The corrections; leaves what `evaluate_constraints` does."""
-    control = vec(ws.control, CONTROL_SIZE)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
-    enough_p = slack * control[POSITION_TOLERANCE] * position_level(ws)
-    enough_v = slack * control[VELOCITY_TOLERANCE] * rate_level(ws)
-    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * acceleration_level(ws)
+    control = vec(workspace.control, CONTROL_SIZE)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    enough_p = slack * control[POSITION_TOLERANCE] * position_level(workspace)
+    enough_v = slack * control[VELOCITY_TOLERANCE] * rate_level(workspace)
+    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * acceleration_level(workspace)
     # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
     # constraints are solved down to rounding, whatever the units
-    rate = vec(ws.rate, RATE_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     tight = control[EXACTNESS] if slack == 1.0 else 1.0
     if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION]:
         tight = 0.0
@@ -84,9 +84,9 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
         tol_a = np.inf
     last_p, last_v, last_a = np.inf, np.inf, np.inf
     for _ in range(int(control[MAX_INNER])):
-        p = constraint_norm(ws, ws.phi)
-        v = constraint_norm(ws, ws.phid)
-        a = constraint_norm(ws, ws.phidd)
+        p = constraint_norm(workspace, workspace.phi)
+        v = constraint_norm(workspace, workspace.phid)
+        a = constraint_norm(workspace, workspace.phidd)
         # what no longer halves is rounding where the row's terms are so large (`row_rounding`), and enough;
         # a level is judged once those above it hold: correcting q moves the residuals of v and a
         correct_p = p > tol_p and not enough_p >= p >= 0.5 * last_p
@@ -94,21 +94,21 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
         correct_a = a > tol_a and not enough_a >= a >= 0.5 * last_a
         if correct_p:
             if not p < 0.5 * last_p:
-                if not p <= row_rounding(ws, ws.q, False):
+                if not p <= row_rounding(workspace, workspace.q, False):
                     return INNER_DIVERGED
                 enough_p = tol_p = p
                 continue
             last_p, last_v, last_a = p, np.inf, np.inf
         elif correct_v:
             if not v < 0.5 * last_v:
-                if not v <= row_rounding(ws, ws.v, False):
+                if not v <= row_rounding(workspace, workspace.v, False):
                     return INNER_DIVERGED
                 enough_v = tol_v = v
                 continue
             last_v, last_a = v, np.inf
         elif correct_a:
             if not a < 0.5 * last_a:
-                if not a <= row_rounding(ws, ws.a, True):
+                if not a <= row_rounding(workspace, workspace.a, True):
                     return INNER_DIVERGED
                 enough_a = tol_a = a
                 continue
@@ -117,13 +117,15 @@ def _meet(ws: Any, lu_address: int, slack: float, acceleration_slack: float) -> 
             return OK
         counters[INNER] += 1
         if correct_p:
-            correct_dependent(ws, ws.lu_p, ws.m_held, ws.phi, ws.q)
+            correct_dependent(workspace, workspace.lu_p, workspace.m_held, workspace.phi, workspace.q)
         if correct_v:
-            correct_dependent(ws, lu_address, ws.m_act, ws.phid, ws.v)
+            correct_dependent(workspace, lu_address, workspace.m_act, workspace.phid, workspace.v)
         if correct_a:
-            correct_dependent(ws, lu_address, ws.m_act, ws.phidd, ws.a)
-        evaluate_constraints(ws)
-    met = constraint_norm(ws, ws.phi) <= enough_p and constraint_norm(ws, ws.phid) <= enough_v
-    if met and constraint_norm(ws, ws.phidd) <= enough_a:
+            correct_dependent(workspace, lu_address, workspace.m_act, workspace.phidd, workspace.a)
+        evaluate_constraints(workspace)
+    met = (
+        constraint_norm(workspace, workspace.phi) <= enough_p and constraint_norm(workspace, workspace.phid) <= enough_v
+    )
+    if met and constraint_norm(workspace, workspace.phidd) <= enough_a:
         return OK
     return INNER_DIVERGED

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import solve_equations
 from ..assembly.evaluate import evaluate_residuals
+from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import (
@@ -60,14 +60,14 @@ PROBE = 1e-7
 
 
 @internal
-def _apply(ws: Any, w: Any, c_q: float, c_v: float) -> None:
+def _apply(workspace: Any, w: Any, c_q: float, c_v: float) -> None:
     """rhs = preconditioner^-1 (S w, Phi_q w) by a difference quotient at the stored point; the point stays."""
-    n = ws.n
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    r, phidd = vec(ws.r, ws.n_ext), vec(ws.phidd, ws.m_ext)
-    scale = vec(ws.scale, n)
-    active = ivec(ws.active, ws.m_act)
+    n = workspace.n
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    q, v, a = vec(workspace.q, workspace.n_ext), vec(workspace.v, workspace.n_ext), vec(workspace.a, workspace.n_ext)
+    r, phidd = vec(workspace.r, workspace.n_ext), vec(workspace.phidd, workspace.m_ext)
+    scale = vec(workspace.scale, n)
+    active = ivec(workspace.active, workspace.m_act)
     move, speed_move, speed = 0.0, 0.0, 0.0
     for i in range(n):
         move = max(move, abs(w[i]) / scale[i])
@@ -79,8 +79,8 @@ def _apply(ws: Any, w: Any, c_q: float, c_v: float) -> None:
         size = PROBE / move
     if speed_move > 0.0:
         size = min(size, PROBE * (1.0 + speed) / speed_move)
-    rhs = vec(ws.rhs, n + ws.m_act)
-    for i in range(n + ws.m_act):
+    rhs = vec(workspace.rhs, n + workspace.m_act)
+    for i in range(n + workspace.m_act):
         rhs[i] = 0.0
     if not np.isfinite(size):
         return
@@ -88,22 +88,24 @@ def _apply(ws: Any, w: Any, c_q: float, c_v: float) -> None:
         q[i] = basis[POINT_Q, i] + size * c_q * w[i]
         v[i] = basis[POINT_V, i] + size * c_v * w[i]
         a[i] = basis[POINT_A, i] + size * w[i]
-    evaluate_residuals(ws)
+    evaluate_residuals(workspace)
     for i in range(n):
         rhs[i] = (r[i] - basis[POINT_R, i]) / size
-    for i in range(ws.m_act):
-        rhs[n + i] = (phidd[active[i]] - vec(ws.basis + 8 * POINT_C * ws.n_ext, ws.m_act)[i]) / size
-    solve_equations(ws, ws.kkt)
+    for i in range(workspace.m_act):
+        rhs[n + i] = (
+            phidd[active[i]] - vec(workspace.basis + 8 * POINT_C * workspace.n_ext, workspace.m_act)[i]
+        ) / size
+    solve_equations(workspace, workspace.kkt)
 
 
 @internal
-def _gmres(ws: Any, c_q: float, c_v: float, forcing: float, hessenberg: Any) -> Any:
+def _gmres(workspace: Any, c_q: float, c_v: float, forcing: float, hessenberg: Any) -> Any:
     """Solve for the accelerations' increment; the right-hand side stands in row FIRST, weighted, with norm in
     hessenberg[0, -1]. Returns (vectors used, relative residual); the solution is in row SOLUTION."""
-    n = ws.n
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    weight = vec(ws.weight_v, ws.n_ext)
-    increment = vec(ws.rhs, n + ws.m_act)
+    n = workspace.n
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    weight = vec(workspace.weight_v, workspace.n_ext)
+    increment = vec(workspace.rhs, n + workspace.m_act)
     cosine, sine, g = hessenberg[MOST_VECTORS + 1], hessenberg[MOST_VECTORS + 2], hessenberg[MOST_VECTORS + 3]
     beta = 0.0
     for i in range(n):
@@ -122,7 +124,7 @@ def _gmres(ws: Any, c_q: float, c_v: float, forcing: float, hessenberg: Any) -> 
     for j in range(min(MOST_VECTORS, n)):
         for i in range(n):
             probe[i] = basis[FIRST + j, i] * weight[i]
-        _apply(ws, probe, c_q, c_v)
+        _apply(workspace, probe, c_q, c_v)
         new = basis[FIRST + j + 1]
         for i in range(n):
             new[i] = increment[i] / weight[i]
@@ -176,67 +178,72 @@ def _gmres(ws: Any, c_q: float, c_v: float, forcing: float, hessenberg: Any) -> 
 
 
 @internal
-def _remember(ws: Any) -> None:
+def _remember(workspace: Any) -> None:
     """Store the present point and its residuals."""
-    n = ws.n
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    q, v, a, r = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext), vec(ws.r, ws.n_ext)
-    phidd, active = vec(ws.phidd, ws.m_ext), ivec(ws.active, ws.m_act)
-    constraints = vec(ws.basis + 8 * POINT_C * ws.n_ext, ws.m_act)
+    n = workspace.n
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    q, v, a, r = (
+        vec(workspace.q, workspace.n_ext),
+        vec(workspace.v, workspace.n_ext),
+        vec(workspace.a, workspace.n_ext),
+        vec(workspace.r, workspace.n_ext),
+    )
+    phidd, active = vec(workspace.phidd, workspace.m_ext), ivec(workspace.active, workspace.m_act)
+    constraints = vec(workspace.basis + 8 * POINT_C * workspace.n_ext, workspace.m_act)
     for i in range(n):
         basis[POINT_Q, i], basis[POINT_V, i], basis[POINT_A, i], basis[POINT_R, i] = q[i], v[i], a[i], r[i]
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         constraints[i] = phidd[active[i]]
 
 
 @internal
-def _return(ws: Any) -> None:
+def _return(workspace: Any) -> None:
     """Back to the stored point."""
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    for i in range(ws.n):
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    q, v, a = vec(workspace.q, workspace.n_ext), vec(workspace.v, workspace.n_ext), vec(workspace.a, workspace.n_ext)
+    for i in range(workspace.n):
         q[i], v[i], a[i] = basis[POINT_Q, i], basis[POINT_V, i], basis[POINT_A, i]
 
 
 @internal
-def solve_jfnk_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_jfnk_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace; with a new preconditioner if an old one fails."""
-    begin_stage(ws, t, c_q, c_v)
+    begin_stage(workspace, t, c_q, c_v)
     status = OK
     for attempt in range(2):
-        status = prepare_attempt(ws, c_q, c_v, attempt, SLOW_KRYLOV)
+        status = prepare_attempt(workspace, c_q, c_v, attempt, SLOW_KRYLOV)
         if status != OK:
             return status
-        fresh = vec(ws.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
-        status = _iterate(ws, c_q, c_v)
+        fresh = vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        status = _iterate(workspace, c_q, c_v)
         if status == OK or fresh:
             break
     return status
 
 
 @internal
-def _iterate(ws: Any, c_q: float, c_v: float) -> int:
+def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
     """The inexact Newton iteration."""
     control, counters, rate = (
-        vec(ws.control, CONTROL_SIZE), ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE),
+        vec(workspace.control, CONTROL_SIZE), ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE),
     )  # fmt: skip
-    n, rows = ws.n, ws.m_act + ws.n_implied
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    weight = vec(ws.weight_v, ws.n_ext)
-    increment = vec(ws.rhs, n + rows)
-    lam, active = vec(ws.lam, ws.m_ext), ivec(ws.active, rows)
+    n, rows = workspace.n, workspace.m_act + workspace.n_implied
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    weight = vec(workspace.weight_v, workspace.n_ext)
+    increment = vec(workspace.rhs, n + rows)
+    lam, active = vec(workspace.lam, workspace.m_ext), ivec(workspace.active, rows)
     hessenberg = np.zeros((MOST_VECTORS + 4, MOST_VECTORS + 1))
     tolerance, slack = control[NEWTON_TOLERANCE], inner_slack(control)
     start_inner = counters[INNER]
     previous, vectors, forcing = np.inf, 0, MOST_FORCING
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status != OK:
             return status
-        solve_increment(ws, ws.kkt)
+        solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
-        norm = increment_norm(ws, c_q, c_v)
+        norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
         for i in range(rows):
@@ -249,17 +256,17 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
             # what stays in the linear system need not be far below the tolerance either
             wanted = max(forcing, min(MOST_FORCING, 0.05 * tolerance / norm))
             # the multipliers have moved: so has the reference of the difference quotients
-            evaluate_residuals(ws)
-            _remember(ws)
-            used, left = _gmres(ws, c_q, c_v, wanted, hessenberg)
+            evaluate_residuals(workspace)
+            _remember(workspace)
+            used, left = _gmres(workspace, c_q, c_v, wanted, hessenberg)
             counters[KRYLOV] += used
             vectors = max(vectors, used)
-            _return(ws)
+            _return(workspace)
             if left > 0.5:
                 return OUTER_SLOW
             for i in range(n):
                 increment[i] = basis[SOLUTION, i]
-            norm = increment_norm(ws, c_q, c_v)
+            norm = increment_norm(workspace, c_q, c_v)
             known = max(known, left)
         if k > 0:
             contraction = norm / previous
@@ -272,8 +279,8 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         previous = norm
         for i in range(rows):
             increment[n + i] = 0.0
-        add_increment(ws, c_q, c_v)
-        evaluate_residuals(ws)
+        add_increment(workspace, c_q, c_v)
+        evaluate_residuals(workspace)
         status = OUTER_SLOW
         if norm * known / (1.0 - known) <= tolerance:
             status = OK
@@ -282,6 +289,6 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
             break
     if status != OK:
         return status
-    status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
+    status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0)
     rate[LAST_INNER] = counters[INNER] - start_inner
     return status

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import factor_equations, solve_equations
 from ..assembly.evaluate import evaluate_tangent
+from ..assembly.redundant_reactions import factor_equations, solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
@@ -35,52 +35,56 @@ CHOICE_GROWTH = 3.0
 
 
 @internal
-def refactor(ws: Any, c_q: float, c_v: float) -> int:
+def refactor(workspace: Any, c_q: float, c_v: float) -> int:
     """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd; of positions alone too,
     where they have dependent coordinates of their own."""
-    rate = vec(ws.rate, RATE_SIZE)
-    evaluate_tangent(ws, c_q, c_v)
+    rate = vec(workspace.rate, RATE_SIZE)
+    evaluate_tangent(workspace, c_q, c_v)
     rate[FACTOR_AGE] = -1.0
     for k in range(3):
-        address, size = ws.kkt, ws.n
+        address, size = workspace.kkt, workspace.n
         if k > 0:
-            address, size = (ws.lu_d, ws.m_act) if k == 1 else (ws.lu_p, ws.m_held)
+            address, size = (workspace.lu_d, workspace.m_act) if k == 1 else (workspace.lu_p, workspace.m_held)
         # without velocity-level rows the third is the second
-        if size == 0 or (k == 2 and ws.m_held == ws.m_act):
+        if size == 0 or (k == 2 and workspace.m_held == workspace.m_act):
             continue
-        status = factor_equations(ws, address) if k == 0 else factor(lu_at(address), ws.values)
+        status = factor_equations(workspace, address) if k == 0 else factor(lu_at(address), workspace.values)
         if status == 2:
             return REANALYZE
         if status != 0:
             return SINGULAR
-    _measure_sensitivity(ws)
-    _measure_condition(ws)
-    ivec(ws.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    _measure_sensitivity(workspace)
+    _measure_condition(workspace)
+    ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
     rate[FACTOR_AGE], rate[FACTOR_CV] = 0.0, c_v
     rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
     return OK
 
 
 @internal
-def _measure_sensitivity(ws: Any) -> None:
+def _measure_sensitivity(workspace: Any) -> None:
     """How much the dependent coordinates move (scaled) for one move of all independent ones: |Phi_qd^-1 Phi_qi x|."""
-    rate = vec(ws.rate, RATE_SIZE)
-    if ws.m_act == 0 or ws.m_act == ws.n:
+    rate = vec(workspace.rate, RATE_SIZE)
+    if workspace.m_act == 0 or workspace.m_act == workspace.n:
         return
-    scale = vec(ws.scale, ws.n)
-    values = vec(ws.values, ws.n_values)
-    row, col, slot = ivec(ws.free_row, ws.n_free), ivec(ws.free_col, ws.n_free), ivec(ws.free_slot, ws.n_free)
-    dependent = ivec(ws.dependent, ws.m_act)
-    rhs = vec(ws.rhs, ws.m_act)
-    for i in range(ws.m_act):
+    scale = vec(workspace.scale, workspace.n)
+    values = vec(workspace.values, workspace.n_values)
+    row, col, slot = (
+        ivec(workspace.free_row, workspace.n_free),
+        ivec(workspace.free_col, workspace.n_free),
+        ivec(workspace.free_slot, workspace.n_free),
+    )
+    dependent = ivec(workspace.dependent, workspace.m_act)
+    rhs = vec(workspace.rhs, workspace.m_act)
+    for i in range(workspace.m_act):
         rhs[i] = 0.0
-    for e in range(ws.n_free):
+    for e in range(workspace.n_free):
         # weights between 1/2 and 3/2 in no simple ratio, so that the columns do not cancel
         golden = 0.6180339887498949 * col[e]
         rhs[row[e]] += values[slot[e]] * scale[col[e]] * (0.5 + golden - np.floor(golden))
-    solve(lu_at(ws.lu_d), ws.rhs)
+    solve(lu_at(workspace.lu_d), workspace.rhs)
     largest = 0.0
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         largest = max(largest, abs(rhs[i]) / scale[dependent[i]])
     rate[SENSITIVITY] = largest
     if rate[FIRST_SENSITIVITY] < 0.0:
@@ -88,22 +92,22 @@ def _measure_sensitivity(ws: Any) -> None:
 
 
 @internal
-def _dependent_move(ws: Any) -> float:
+def _dependent_move(workspace: Any) -> float:
     """How far (scaled) the dependent coordinates move to mend the same violation, the others being held."""
-    rhs = vec(ws.rhs, ws.m_act)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    dependent = ivec(ws.dependent, ws.m_act)
-    for i in range(ws.m_act):
+    rhs = vec(workspace.rhs, workspace.m_act)
+    probe, scale = vec(workspace.probe, workspace.m_act), vec(workspace.scale, workspace.n)
+    dependent = ivec(workspace.dependent, workspace.m_act)
+    for i in range(workspace.m_act):
         rhs[i] = probe[i]
-    solve(lu_at(ws.lu_d), ws.rhs)
+    solve(lu_at(workspace.lu_d), workspace.rhs)
     largest = 0.0
-    for i in range(ws.m_act):
+    for i in range(workspace.m_act):
         largest = max(largest, abs(rhs[i]) / scale[dependent[i]])
     return largest
 
 
 @internal
-def _measure_condition(ws: Any) -> None:
+def _measure_condition(workspace: Any) -> None:
     """How far (scaled) the coordinates must move, at least, to mend one pseudo-random violation of size 1 of all rows:
     about the inverse of the distance to a singular position, whatever the partition.
 
@@ -112,25 +116,25 @@ def _measure_condition(ws: Any) -> None:
     far from any singular position. So where it has grown, it counts only if the dependent coordinates alone, whose
     move is no smaller than the smallest either, do not mend the violation by less than ever before.
     """
-    if ws.m_act == 0:
+    if workspace.m_act == 0:
         return
-    rate = vec(ws.rate, RATE_SIZE)
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    probe, scale = vec(ws.probe, ws.m_act), vec(ws.scale, ws.n)
-    for i in range(ws.n):
+    rate = vec(workspace.rate, RATE_SIZE)
+    rhs = vec(workspace.rhs, workspace.n + workspace.m_act)
+    probe, scale = vec(workspace.probe, workspace.m_act), vec(workspace.scale, workspace.n)
+    for i in range(workspace.n):
         rhs[i] = 0.0
-    for i in range(ws.m_act):
-        rhs[ws.n + i] = probe[i]
-    solve_equations(ws, ws.kkt)
+    for i in range(workspace.m_act):
+        rhs[workspace.n + i] = probe[i]
+    solve_equations(workspace, workspace.kkt)
     largest = 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         largest = max(largest, abs(rhs[i]) / scale[i])
     least = rate[LEAST_CONDITION]
-    if largest > CHOICE_GROWTH * least > 0.0 and _dependent_move(ws) <= least:
+    if largest > CHOICE_GROWTH * least > 0.0 and _dependent_move(workspace) <= least:
         largest = least
     rate[CONDITION] = largest
     rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
-    if least > CHOICE_GROWTH * largest > CHOICE_GROWTH**2 * _dependent_move(ws):
+    if least > CHOICE_GROWTH * largest > CHOICE_GROWTH**2 * _dependent_move(workspace):
         # the first ones of a structure, at guesses far away, were such moves: what they were is no growth
         rate[WORST_CONDITION] = largest
     if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import factor_equations
 from ..assembly.evaluate import constraint_norm, evaluate_power, evaluate_residuals, evaluate_tangent
 from ..assembly.levels import position_level, rate_level
 from ..assembly.projection import correct_least
+from ..assembly.redundant_reactions import factor_equations
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..state.workspace_records import (
@@ -22,46 +22,46 @@ from .accelerations import solve_accelerations
 
 
 @internal
-def _project_level(ws: Any, residual_address: int, x_address: int, tolerance: float) -> int:
+def _project_level(workspace: Any, residual_address: int, x_address: int, tolerance: float) -> int:
     """Bring one level of the constraints to rounding by corrections of least M-norm, with the factors of `kkt_query`.
 
     All coordinates take part, so that no partition is needed: one that is strained at this point does no harm.
     """
     previous = np.inf
     for _ in range(12):
-        norm = constraint_norm(ws, residual_address)
-        level = position_level(ws) if x_address == ws.q else rate_level(ws)
+        norm = constraint_norm(workspace, residual_address)
+        level = position_level(workspace) if x_address == workspace.q else rate_level(workspace)
         if norm <= tolerance * level:
             return OK
         if not norm < 0.5 * previous:
             return INNER_DIVERGED
         previous = norm
-        correct_least(ws, residual_address, x_address)
+        correct_least(workspace, residual_address, x_address)
     return INNER_DIVERGED
 
 
 @internal
-def project_motion(ws: Any) -> int:
+def project_motion(workspace: Any) -> int:
     """Coordinates and velocities of the current point onto the constraints."""
-    control = vec(ws.control, CONTROL_SIZE)
-    evaluate_residuals(ws)
-    if ws.m_act > 0:
-        evaluate_tangent(ws, 0.0, 0.0)
-        if factor_equations(ws, ws.kkt_query) != 0:
+    control = vec(workspace.control, CONTROL_SIZE)
+    evaluate_residuals(workspace)
+    if workspace.m_act > 0:
+        evaluate_tangent(workspace, 0.0, 0.0)
+        if factor_equations(workspace, workspace.kkt_query) != 0:
             return REANALYZE
-        status = _project_level(ws, ws.phi, ws.q, control[POSITION_TOLERANCE])
+        status = _project_level(workspace, workspace.phi, workspace.q, control[POSITION_TOLERANCE])
         if status != OK:
             return status
-        return _project_level(ws, ws.phid, ws.v, control[VELOCITY_TOLERANCE])
+        return _project_level(workspace, workspace.phid, workspace.v, control[VELOCITY_TOLERANCE])
     return OK
 
 
 @internal
-def project(ws: Any) -> int:
+def project(workspace: Any) -> int:
     """The same, then accelerations and multipliers."""
-    status = project_motion(ws)
+    status = project_motion(workspace)
     if status != OK:
         return status
-    status = solve_accelerations(ws)
-    evaluate_power(ws)
+    status = solve_accelerations(workspace)
+    evaluate_power(workspace)
     return status

@@ -45,12 +45,12 @@ _HOPELESS = 1e3
 
 
 @internal
-def _relax(ws: Any, k: int, before: float) -> float:
+def _relax(workspace: Any, k: int, before: float) -> float:
     """Aitken's factor from this residual (in `rhs`) and the previous one; rhs becomes the relaxed increment."""
-    n = ws.n
-    increment = vec(ws.rhs, n + ws.m_act)
-    previous = mat(ws.basis, ws.n_basis, ws.n_ext)[0]
-    weight = vec(ws.weight_v, ws.n_ext)
+    n = workspace.n
+    increment = vec(workspace.rhs, n + workspace.m_act)
+    previous = mat(workspace.basis, workspace.n_basis, workspace.n_ext)[0]
+    weight = vec(workspace.weight_v, workspace.n_ext)
     factor = 1.0
     if k > 0:
         along, square = 0.0, 0.0
@@ -67,16 +67,16 @@ def _relax(ws: Any, k: int, before: float) -> float:
 
 
 @internal
-def _mix(ws: Any, k: int, depth: int) -> None:
+def _mix(workspace: Any, k: int, depth: int) -> None:
     """Anderson's increment in `rhs`, from this residual and the differences of the last `depth` iterations.
 
     With f the residual, dF and dX the differences: f - (dX + dF) gamma, gamma the least-squares solution of
     dF gamma = f by modified Gram-Schmidt in the error weights; nearly dependent differences are left out.
     """
-    n = ws.n
-    increment = vec(ws.rhs, n + ws.m_act)
-    basis = mat(ws.basis, ws.n_basis, ws.n_ext)
-    weight = vec(ws.weight_v, ws.n_ext)
+    n = workspace.n
+    increment = vec(workspace.rhs, n + workspace.m_act)
+    basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
+    weight = vec(workspace.weight_v, workspace.n_ext)
     last_step, last_residual = basis[0], basis[1]
     if k > 0:
         at = (k - 1) % depth
@@ -130,12 +130,12 @@ def _mix(ws: Any, k: int, depth: int) -> None:
 
 
 @internal
-def solve_simple_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_simple_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage by the fixed point, from the predicted a, lambda in the workspace."""
     control, counters, rate = (
-        vec(ws.control, CONTROL_SIZE), ivec(ws.counters, COUNTERS_SIZE), vec(ws.rate, RATE_SIZE),
+        vec(workspace.control, CONTROL_SIZE), ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE),
     )  # fmt: skip
-    begin_stage(ws, t, c_q, c_v)
+    begin_stage(workspace, t, c_q, c_v)
     tolerance, slack, acceleration = control[NEWTON_TOLERANCE], inner_slack(control), control[ACCELERATION]
     start_inner = counters[INNER]
     previous, first, relaxation = np.inf, 0.0, 1.0
@@ -143,19 +143,19 @@ def solve_simple_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
     for k in range(int(control[MAX_OUTER])):
         # the first matrices come from the predicted point, which may miss the constraints a little
         if k == 0:
-            status = refactor(ws, 0.0, 0.0)
+            status = refactor(workspace, 0.0, 0.0)
             if status != OK:
                 return status
-        status = inner_loop(ws, ws.lu_d, slack, np.inf)
+        status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status != OK:
             return status
         if k > 0:
-            status = refactor(ws, 0.0, 0.0)
+            status = refactor(workspace, 0.0, 0.0)
             if status != OK:
                 return status
-        solve_increment(ws, ws.kkt)
+        solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
-        norm = increment_norm(ws, c_q, c_v)
+        norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
         contraction = norm / previous
@@ -167,11 +167,11 @@ def solve_simple_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
                 rate[FAILED_NORM] = contraction
                 return OUTER_DIVERGED
         if acceleration == AITKEN:
-            relaxation = _relax(ws, k, relaxation)
+            relaxation = _relax(workspace, k, relaxation)
         elif acceleration > AITKEN:
-            _mix(ws, k, int(acceleration) - 1)
-        add_increment(ws, c_q, c_v)
-        evaluate_residuals(ws)
+            _mix(workspace, k, int(acceleration) - 1)
+        add_increment(workspace, c_q, c_v)
+        evaluate_residuals(workspace)
         if k > 0:
             rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
             known = min(rate[OUTER_RATE], 0.99)
@@ -186,7 +186,7 @@ def solve_simple_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
         status = OUTER_SLOW
     if status != OK:
         return status
-    status = inner_loop(ws, ws.lu_d, 1.0, 1.0)
+    status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0)
     rate[LAST_INNER] = counters[INNER] - start_inner
     rate[FACTOR_AGE] = -1.0
     return status

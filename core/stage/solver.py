@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from ..assembly.compatibility import left_of_sharing
 from ..assembly.evaluate import evaluate_constraints, evaluate_residuals
+from ..assembly.redundant_reactions import left_of_sharing
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
@@ -63,18 +63,18 @@ SLOW = 0.2
 
 
 @internal
-def solve_increment(ws: Any, lu_address: int) -> None:
+def solve_increment(workspace: Any, lu_address: int) -> None:
     """rhs = -matrix^-1 (r, phidd), and what is left of compatibility."""
-    rhs = vec(ws.rhs, ws.n + ws.m_act)
-    r = vec(ws.r, ws.n)
-    phidd = vec(ws.phidd, ws.m_ext)
-    active = ivec(ws.active, ws.m_act)
-    for i in range(ws.n):
+    rhs = vec(workspace.rhs, workspace.n + workspace.m_act)
+    r = vec(workspace.r, workspace.n)
+    phidd = vec(workspace.phidd, workspace.m_ext)
+    active = ivec(workspace.active, workspace.m_act)
+    for i in range(workspace.n):
         rhs[i] = -r[i]
-    for i in range(ws.m_act):
-        rhs[ws.n + i] = -phidd[active[i]]
-    left_of_sharing(ws, False)
-    solve(lu_at(lu_address), ws.rhs)
+    for i in range(workspace.m_act):
+        rhs[workspace.n + i] = -phidd[active[i]]
+    left_of_sharing(workspace, False)
+    solve(lu_at(lu_address), workspace.rhs)
 
 
 @internal
@@ -88,36 +88,36 @@ def weighted_norm(x: Any, weight: Any, n: int) -> float:
 
 
 @internal
-def evaluate_prediction(ws: Any, c_q: float, c_v: float) -> None:
+def evaluate_prediction(workspace: Any, c_q: float, c_v: float) -> None:
     """Residuals at q = q* + c_q a, v = v* + c_v a of all coordinates; for the dependent ones this is a prediction."""
-    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    q_star, v_star = vec(ws.q_star, ws.n_ext), vec(ws.v_star, ws.n_ext)
-    for i in range(ws.n):
+    q, v, a = vec(workspace.q, workspace.n_ext), vec(workspace.v, workspace.n_ext), vec(workspace.a, workspace.n_ext)
+    q_star, v_star = vec(workspace.q_star, workspace.n_ext), vec(workspace.v_star, workspace.n_ext)
+    for i in range(workspace.n):
         q[i] = q_star[i] + c_q * a[i]
         v[i] = v_star[i] + c_v * a[i]
-    add_in_frame(ws, a)
-    evaluate_residuals(ws)
+    add_in_frame(workspace, a)
+    evaluate_residuals(workspace)
 
 
 @internal
-def begin_stage(ws: Any, t: float, c_q: float, c_v: float) -> None:
+def begin_stage(workspace: Any, t: float, c_q: float, c_v: float) -> None:
     """The time of a stage, and the residuals at the point that its formula makes of the predicted accelerations."""
-    vec(ws.t, 1)[0] = t
-    ivec(ws.counters, COUNTERS_SIZE)[STAGES] += 1
-    evaluate_prediction(ws, c_q, c_v)
+    vec(workspace.t, 1)[0] = t
+    ivec(workspace.counters, COUNTERS_SIZE)[STAGES] += 1
+    evaluate_prediction(workspace, c_q, c_v)
 
 
 @internal
-def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: int) -> int:
+def prepare_attempt(workspace: Any, c_q: float, c_v: float, attempt: int, most_outer: int) -> int:
     """Matrices for attempt 0 or 1 at a stage: first the old ones, unless they have become slow (more than `most_outer`
     iterations at the last stage) or too old; then new ones at the predicted point. FACTOR_AGE is 1 if they are new."""
-    rate = vec(ws.rate, RATE_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     if attempt > 0:
-        evaluate_prediction(ws, c_q, c_v)
-    most_inner = MOST_INNER if ws.part_first == 0 else MOST_CHEAP_INNER
+        evaluate_prediction(workspace, c_q, c_v)
+    most_inner = MOST_INNER if workspace.part_first == 0 else MOST_CHEAP_INNER
     slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner
     if attempt > 0 or slow or not 0.0 <= rate[FACTOR_AGE] < OLDEST:
-        status = refactor(ws, c_q, c_v)
+        status = refactor(workspace, c_q, c_v)
         if status != OK:
             return status
     rate[FACTOR_AGE] += 1.0
@@ -125,27 +125,27 @@ def prepare_attempt(ws: Any, c_q: float, c_v: float, attempt: int, most_outer: i
 
 
 @internal
-def increment_norm(ws: Any, c_q: float, c_v: float) -> float:
+def increment_norm(workspace: Any, c_q: float, c_v: float) -> float:
     """Size of the acceleration increment in `rhs`, as the change of q and v that it makes, in error weights."""
-    increment = vec(ws.rhs, ws.n + ws.m_act)
-    of_q = weighted_norm(increment, vec(ws.weight_q, ws.n_ext), ws.n)
-    of_v = weighted_norm(increment, vec(ws.weight_v, ws.n_ext), ws.n)
+    increment = vec(workspace.rhs, workspace.n + workspace.m_act)
+    of_q = weighted_norm(increment, vec(workspace.weight_q, workspace.n_ext), workspace.n)
+    of_v = weighted_norm(increment, vec(workspace.weight_v, workspace.n_ext), workspace.n)
     return max(c_q * of_q, c_v * of_v)
 
 
 @internal
-def add_increment(ws: Any, c_q: float, c_v: float) -> None:
+def add_increment(workspace: Any, c_q: float, c_v: float) -> None:
     """Add the increments of accelerations and multipliers in `rhs`; q and v follow."""
-    n, m_act = ws.n, ws.m_act
-    q, v, a = vec(ws.q, ws.n_ext), vec(ws.v, ws.n_ext), vec(ws.a, ws.n_ext)
-    lam, rows = vec(ws.lam, ws.m_ext), m_act + ws.n_implied
-    active = ivec(ws.active, rows)
-    increment = vec(ws.rhs, n + rows)
+    n, m_act = workspace.n, workspace.m_act
+    q, v, a = vec(workspace.q, workspace.n_ext), vec(workspace.v, workspace.n_ext), vec(workspace.a, workspace.n_ext)
+    lam, rows = vec(workspace.lam, workspace.m_ext), m_act + workspace.n_implied
+    active = ivec(workspace.active, rows)
+    increment = vec(workspace.rhs, n + rows)
     for i in range(n):
         q[i] += c_q * increment[i]
         v[i] += c_v * increment[i]
         a[i] += increment[i]
-    add_in_frame(ws, increment)
+    add_in_frame(workspace, increment)
     for i in range(rows):
         lam[active[i]] += increment[n + i]
 
@@ -170,30 +170,30 @@ def judge_contraction(rate: Any, contraction: float, wanting: bool, renewed: int
 
 
 @internal
-def solve_stage(ws: Any, t: float, c_q: float, c_v: float) -> int:
+def solve_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage from the predicted a, lambda in the workspace. Returns OK or what went wrong.
 
     On failure with old matrices it tries once more with new ones.
     """
-    begin_stage(ws, t, c_q, c_v)
+    begin_stage(workspace, t, c_q, c_v)
     status = OK
     for attempt in range(2):
-        status = prepare_attempt(ws, c_q, c_v, attempt, MOST_OUTER)
+        status = prepare_attempt(workspace, c_q, c_v, attempt, MOST_OUTER)
         if status != OK:
             return status
-        fresh = vec(ws.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
-        status = _iterate(ws, c_q, c_v)
+        fresh = vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        status = _iterate(workspace, c_q, c_v)
         if status == OK or fresh:
             break
     return status
 
 
 @internal
-def _iterate(ws: Any, c_q: float, c_v: float) -> int:
+def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
     """The outer loop."""
-    control = vec(ws.control, CONTROL_SIZE)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
-    rate = vec(ws.rate, RATE_SIZE)
+    control = vec(workspace.control, CONTROL_SIZE)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     tolerance = control[NEWTON_TOLERANCE]
     start_inner = counters[INNER]
     previous = np.inf
@@ -201,16 +201,16 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
     slack = inner_slack(control)
     status = OUTER_SLOW
     for k in range(int(control[MAX_OUTER])):
-        status = inner_loop(ws, ws.lu_d, slack, np.inf, k > 0)
+        status = inner_loop(workspace, workspace.lu_d, slack, np.inf, k > 0)
         if status != OK:
             return status
-        solve_increment(ws, ws.kkt)
+        solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
-        norm = increment_norm(ws, c_q, c_v)
+        norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
-        add_increment(ws, c_q, c_v)
-        evaluate_constraints(ws)
+        add_increment(workspace, c_q, c_v)
+        evaluate_constraints(workspace)
         if control[LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
             # the matrices are those of the equations: a second increment would be rounding
             rate[LAST_OUTER], status = 1.0, OK
@@ -219,7 +219,7 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
             status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
             if status == OUTER_SLOW:
                 renewed += 1
-                status = refactor(ws, c_q, c_v)
+                status = refactor(workspace, c_q, c_v)
             if status != OK:
                 return status
         previous = norm
@@ -233,6 +233,6 @@ def _iterate(ws: Any, c_q: float, c_v: float) -> int:
         status = OUTER_SLOW
     if status != OK:
         return status
-    status = inner_loop(ws, ws.lu_d, 1.0, 1.0, True)
+    status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0, True)
     rate[LAST_INNER] = counters[INNER] - start_inner
     return status

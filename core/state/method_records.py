@@ -47,7 +47,7 @@ STEP_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)
 
 
 call_step = caller(STEP_SIGNATURE)
-"""call_step(address, ws, ms, h)."""
+"""call_step(address, workspace, method, h)."""
 
 
 def step_address(step: Any) -> int:

@@ -44,7 +44,7 @@ loop_at = record_view(LOOP_TYPE)
 """loop_at(address): the loop record there."""
 FIND_EVENTS_SIGNATURE = types.boolean(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64, types.boolean)
 call_find_events = caller(FIND_EVENTS_SIGNATURE)
-"""call_find_events(address, ws, ms, lc, h, all of them)."""
+"""call_find_events(address, workspace, method, loop, h, all of them)."""
 
 TRIAL_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE, types.float64)
 ACCEPT_SIGNATURE = types.void(WORKSPACE_TYPE, METHOD_TYPE, LOOP_TYPE)
@@ -161,5 +161,5 @@ IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS, ROUNDS, UNSHARED_L
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
 """Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the
 energy; nor is JUMPS: the rate of a driver, with its row of Phi in place of a contact, has jumped; nor ROUNDS: a contact
-of an impact in rounds (`events/impact_rounds.py`); nor the last two, what an instant has not found
+of an impact in rounds (`events/impact_retries.py`); nor the last two, what an instant has not found
 (`events/report.py`)."""

@@ -185,7 +185,7 @@ RATE_SIZE = 14
 # columns of `counters` (int64)
 STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
 OF_IMPULSES = 10  # steps of impulses, which are among the steps
-IMPACTS_IN_ROUNDS = 11  # see `events/impact_rounds.py`
+IMPACTS_IN_ROUNDS = 11  # see `events/impact_retries.py`
 UNSHARED_LOADS = 12  # instants at which contacts that repeat each other have got other than the least forces
 LEFT_APPROACHES = 13  # instants that have left an approach (`events/residual_approach.py`)
 COUNTERS_SIZE = 14

@@ -9,14 +9,14 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..batch import in_threads, run_into
+from ..batch_result import Runs
 from ..compiled_model import CompiledModel, compile_model
-from ..description import Model
 from ..errors import ModelError, TlismniError
-from ..one_run import check_end, check_times
-from ..runs import Runs
+from ..multibody_model import Model
+from ..simulate_one import check_end, check_times
 from ..simulation.simulation import Simulation
 from ..tolerances import OfScales
+from ..worker_threads import in_threads, run_into
 
 Columns = dict[str, NDArray[Any]]
 START = "start."

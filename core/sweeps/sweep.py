@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..description import Model
 from ..errors import ModelError
 from ..extras import require
+from ..multibody_model import Model
 from .cluster import run_on_cluster
 from .problem import ModelProblem, Problem
 from .sampling import Sampling, grid, sampled

@@ -17,7 +17,7 @@ from ..event_detection.repivoting import orientation
 from ..events.event_handling import go_on_behind, settle
 from ..events.inconsistent_modes import find_unsettled
 from ..events.moved_surfaces import find_moved
-from ..events.records import ALONE, DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, whole
+from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, scalars
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
 from ..state.method_records import METHOD_TYPE
@@ -66,14 +66,14 @@ workspace_at, method_at, loop_at, drive_at = map(record_view, (WORKSPACE_TYPE, M
 
 
 @internal
-def _aim(dr: Any, ms: Any, lc: Any) -> int:
+def _aim(drive: Any, method: Any, loop: Any) -> int:
     """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
-    goals, clock = vec(dr.goals, GOALS_SIZE), vec(lc.clock, CLOCK_SIZE)
-    breakpoints = vec(dr.breakpoints, dr.n_breakpoints)
-    now, goal, ahead = history_time(ms, 0), goals[GOAL], np.inf
+    goals, clock = vec(drive.goals, GOALS_SIZE), vec(loop.clock, CLOCK_SIZE)
+    breakpoints = vec(drive.breakpoints, drive.n_breakpoints)
+    now, goal, ahead = history_time(method, 0), goals[GOAL], np.inf
     if now >= goal:
         return REACHED
-    for i in range(dr.n_breakpoints):
+    for i in range(drive.n_breakpoints):
         if now < breakpoints[i] < ahead:
             ahead = breakpoints[i]
     # steps end just before a breakpoint, so that they see what holds to the left of it
@@ -87,41 +87,41 @@ def _aim(dr: Any, ms: Any, lc: Any) -> int:
 
 
 @internal
-def drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
+def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> int:
     """Steps and events up to the goal; `hold`: only up to where events are pending."""
-    lc.may_sleep = 1 if ws.n_contacts >= MANY else 0
-    code = _drive_on(dr, ws, ms, lc, hold)
-    lc.may_sleep = 0
+    loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
+    code = _drive_on(drive, workspace, method, loop, hold)
+    loop.may_sleep = 0
     # whoever builds what is wanted does not look at gaps, and comes back at once
     if code != WANTED:
-        wake_all(ws, ms, lc)
+        wake_all(workspace, method, loop)
     return code
 
 
 @internal
-def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
-    counts, steps = ivec(dr.counts, COUNTS_SIZE), ivec(ws.counters, COUNTERS_SIZE)
+def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> int:
+    counts, steps = ivec(drive.counts, COUNTS_SIZE), ivec(workspace.counters, COUNTERS_SIZE)
     last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
     side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
     while True:
-        if is_due(dr, ws):
+        if is_due(drive, workspace):
             side = 0.0
             # which redundant rows are left out is for Python to look at, at every instant; steps of impulses take those
             # that a new partition leaves out
-            beyond = history_time(ms, 0) > vec(dr.goals, GOALS_SIZE)[GOAL]
-            if (ws.n_redundant > 0 or hold or beyond) and vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+            beyond = history_time(method, 0) > vec(drive.goals, GOALS_SIZE)[GOAL]
+            if (workspace.n_redundant > 0 or hold or beyond) and vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
                 return SETTLE
-            status = call_settle(dr.settle, dr)
+            status = call_settle(drive.settle, drive)
             if status != SETTLED:
                 counts[STATUS] = status
                 return SETTLE if status == DECLINED else (WANTED if status <= WANT_MEMORY else FAILED)
             continue
-        code = _aim(dr, ms, lc)
+        code = _aim(drive, method, loop)
         side = 0.0 if code == DUE else side
-        if code == DUE and ws.n_redundant == 0:
-            if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+        if code == DUE and workspace.n_redundant == 0:
+            if loop.capacity > 0 and ivec(loop.cursor, 1)[0] >= loop.capacity:
                 return FULL
-            status = call_settle(dr.pass_breakpoint, dr)
+            status = call_settle(drive.pass_breakpoint, drive)
             if status != SETTLED:
                 counts[STATUS] = status
                 return WANTED if status <= WANT_MEMORY else FAILED
@@ -131,21 +131,21 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
         left = last - steps[STEPS] - counts[HANDLED]
         if left <= 0:
             return CHUNK
-        if vec(lc.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
-            side, code = 0.0, call_settle(dr.push_step, dr)
+        if vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
+            side, code = 0.0, call_settle(drive.push_step, drive)
             if code != OK:
                 return code
             continue
         # while a contact slides, each step is looked at: on the way to where it jams the forces grow without bound, and
         # behind it the determinant has the other sign
-        sliding, before = any_slides(ws), history_time(ms, 0)
+        sliding, before = any_slides(workspace), history_time(method, 0)
         if sliding and side == 0.0:
-            recall(ws, ms, 0)
-            side = _known(orientation(ws))
-        code = call_run(dr.run, ws, ms, lc, 1 if sliding else left)
+            recall(workspace, method, 0)
+            side = _known(orientation(workspace))
+        code = call_run(drive.run, workspace, method, loop, 1 if sliding else left)
         if (code == CHUNK or code == REPARTITION) and sliding:
-            if history_time(ms, 0) > before:
-                now = orientation(ws)
+            if history_time(method, 0) > before:
+                now = orientation(workspace)
                 if now == now and now != side and side != 0.0:
                     return JAM
                 side = _known(now)
@@ -155,7 +155,7 @@ def _drive_on(dr: Any, ws: Any, ms: Any, lc: Any, hold: bool) -> int:
             continue
         if code != EVENT:
             return code
-        if call_locate(dr.locate, dr, False) != OK:
+        if call_locate(drive.locate, drive, False) != OK:
             return UNLOCATED
 
 
@@ -166,84 +166,84 @@ def _known(side: float) -> float:
 
 
 @internal
-def is_due(dr: Any, ws: Any) -> bool:
+def is_due(drive: Any, workspace: Any) -> bool:
     """True if events are pending."""
-    pending = ivec(dr.pending, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    pending = ivec(drive.pending, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if pending[k] != 0:
             return True
     return False
 
 
 @compiled_unlocked
-def drive(dr: Any, hold: bool) -> int:
+def drive(drive: Any, hold: bool) -> int:
     """Go to the goal; a code of `records` or the status of a step that cannot be made."""
-    return drive_on(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop), hold)
+    return drive_on(drive, workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop), hold)
 
 
 @compiled
-def aim_now(dr: Any) -> int:
+def aim_now(drive: Any) -> int:
     """`_aim`, for Python."""
-    return _aim(dr, method_at(dr.method), loop_at(dr.loop))
+    return _aim(drive, method_at(drive.method), loop_at(drive.loop))
 
 
 @compiled
-def wake_now(dr: Any) -> None:
+def wake_now(drive: Any) -> None:
     """`wake_all`, for Python."""
-    wake_all(workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+    wake_all(workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop))
 
 
 @compiled
-def settle_pending(dr: Any) -> int:
+def settle_pending(drive: Any) -> int:
     """Let the pending events happen at the newest row: a status of `events/records.py`."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return settle(dr, instant_at(dr.instant), ws, ms, lc)
+    workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
+    return settle(drive, instant_at(drive.instant), workspace, method, loop)
 
 
 @compiled
-def push_step(dr: Any) -> int:
+def push_step(drive: Any) -> int:
     """One step of impulses, as `make_push_step` says."""
-    return make_push_step(dr, workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop))
+    return make_push_step(drive, workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop))
 
 
 @compiled
-def pass_breakpoint(dr: Any) -> int:
+def pass_breakpoint(drive: Any) -> int:
     """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    return go_on_behind(dr, instant_at(dr.instant), ws, ms, lc)
+    workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
+    return go_on_behind(drive, instant_at(drive.instant), workspace, method, loop)
 
 
 @compiled
-def unsettled_now(dr: Any) -> bool:
+def unsettled_now(drive: Any) -> bool:
     """Contacts that do not fit the forces, or the speeds of their surfaces, at the current point, for Python."""
-    ws, ev = workspace_at(dr.workspace), instant_at(dr.instant)
-    unsettled = ivec(ev.unsettled, ws.n_contacts)
-    found = find_unsettled(ev, ws, unsettled)
-    return find_moved(ws, method_at(dr.method), unsettled) or found
+    workspace, instant = workspace_at(drive.workspace), instant_at(drive.instant)
+    unsettled = ivec(instant.unsettled, workspace.n_contacts)
+    found = find_unsettled(instant, workspace, unsettled)
+    return find_moved(workspace, method_at(drive.method), unsettled) or found
 
 
 @compiled
-def open_now(dr: Any) -> int:
+def open_now(drive: Any) -> int:
     """`open_touching` at the current point, for Python."""
-    ev = instant_at(dr.instant)
-    whole(ev)[ALONE] = 0
-    return call_part(ev.open_touching, ev, dr, workspace_at(dr.workspace), method_at(dr.method))
+    instant = instant_at(drive.instant)
+    scalars(instant).diagonal_only = 0
+    return call_part(instant.open_touching, instant, drive, workspace_at(drive.workspace), method_at(drive.method))
 
 
 @compiled
-def locate_now(dr: Any, again: bool) -> int:
+def locate_now(drive: Any, again: bool) -> int:
     """`locate`, after `drive` has returned. `again`: the step of size TRIAL_STEP is made again first; UNLOCATED: it has
     no event any more. With any other code than OK nothing is accepted, and the newest row is the current point."""
-    ws, ms, lc = workspace_at(dr.workspace), method_at(dr.method), loop_at(dr.loop)
-    status, h = OK, vec(lc.clock, CLOCK_SIZE)[TRIAL_STEP]
+    workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
+    status, h = OK, vec(loop.clock, CLOCK_SIZE)[TRIAL_STEP]
     if again:
-        recall(ws, ms, 0)
-        status = call_trial(dr.trial, ws, ms, lc, h)
-        if status == OK and not call_find_events(lc.find_events, ws, ms, lc, h, False):
+        recall(workspace, method, 0)
+        status = call_trial(drive.trial, workspace, method, loop, h)
+        if status == OK and not call_find_events(loop.find_events, workspace, method, loop, h, False):
             status = UNLOCATED
     if status == OK:
-        status = locate(dr, ws, ms, lc)
+        status = locate(drive, workspace, method, loop)
     if status != OK:
-        recall(ws, ms, 0)
-        vec(ws.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+        recall(workspace, method, 0)
+        vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
     return status

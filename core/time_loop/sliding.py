@@ -4,21 +4,20 @@
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import mat
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE, RATIO, SLIDE
+from ..state.modes import CLOSED, memories_at
 
 
 @internal
-def slides(ws: Any, k: int) -> bool:
+def slides(workspace: Any, k: int) -> bool:
     """True if the friction of closed contact k is in proportion to its normal force because it slides."""
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)[k]
-    return memory[MODE] == CLOSED and abs(memory[SLIDE]) == 1.0 and memory[RATIO] != 0.0
+    memory = memories_at(workspace.memory, workspace.n_contacts)[k]
+    return memory.mode == CLOSED and abs(memory.slide_mode) == 1.0 and memory.friction_ratio != 0.0
 
 
 @internal
-def any_slides(ws: Any) -> bool:
+def any_slides(workspace: Any) -> bool:
     """True if a closed contact slides."""
     found = False
-    for k in range(ws.n_contacts):
-        found = found or slides(ws, k)
+    for k in range(workspace.n_contacts):
+        found = found or slides(workspace, k)
     return found

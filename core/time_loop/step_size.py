@@ -40,14 +40,14 @@ def _controlled(clock: Any, error: float, order: float) -> float:
 
 
 @internal
-def next_step(lc: Any, h: float, error: float, order: float, multistep: bool, hold: float) -> float:
+def next_step(loop: Any, h: float, error: float, order: float, multistep: bool, hold: float) -> float:
     """Step to follow an accepted one of size h.
 
     A multistep formula grows only after `hold` equal steps, and only if it pays: growing at every step is not
     zero-stable for more than a few steps, growing by GROWTH between such runs of equal steps is (companion matrices
     of the variable-step formulas), and equal steps keep the coefficients.
     """
-    clock = vec(lc.clock, CLOCK_SIZE)
+    clock = vec(loop.clock, CLOCK_SIZE)
     if not multistep:
         clock[HELD] = 0.0
         return h * _controlled(clock, error, order)

@@ -79,39 +79,44 @@ LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look a
 
 
 @internal
-def set_weights(ws: Any, ms: Any) -> None:
+def set_weights(workspace: Any, method: Any) -> None:
     """Error weights atol + rtol |y| at the newest row (with fixed steps: of the outer loop's convergence test)."""
-    control = vec(ws.control, CONTROL_SIZE)
-    row = history_row(ws, ms, 0)
-    weight_q, weight_v = vec(ws.weight_q, ws.n_ext), vec(ws.weight_v, ws.n_ext)
-    atol_q, atol_v = vec(ws.atol_q, ws.n_ext), vec(ws.atol_v, ws.n_ext)
-    scale = vec(ws.scale, ws.n)
+    control = vec(workspace.control, CONTROL_SIZE)
+    row = history_row(workspace, method, 0)
+    weight_q, weight_v = vec(workspace.weight_q, workspace.n_ext), vec(workspace.weight_v, workspace.n_ext)
+    atol_q, atol_v = vec(workspace.atol_q, workspace.n_ext), vec(workspace.atol_v, workspace.n_ext)
+    scale = vec(workspace.scale, workspace.n)
     level_q, level_v = 0.0, 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         level_q = max(level_q, abs(row[i]) / scale[i])
-        level_v = max(level_v, abs(row[ws.n_ext + i]) / scale[i])
-    for i in range(ws.n):
+        level_v = max(level_v, abs(row[workspace.n_ext + i]) / scale[i])
+    for i in range(workspace.n):
         # a coordinate near zero has the rounding of the large ones that it is tied to by the constraints
         weight_q[i] = max(atol_q[i], COORDINATE_DIFFERENCES * level_q * scale[i]) + control[RTOL] * abs(row[i])
         weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control[RTOL] * abs(
-            row[ws.n_ext + i]
+            row[workspace.n_ext + i]
         )
     # work accounts: relative to what they hold, or to the model's own energy (impulse)
-    work_scale = vec(ws.work_scale, ws.n_ext)
-    for i in range(ws.n_ext - ws.n_work, ws.n_ext):
-        weight_v[i] = control[ATOL] * work_scale[i] + control[RTOL] * max(work_scale[i], abs(row[ws.n_ext + i]))
+    work_scale = vec(workspace.work_scale, workspace.n_ext)
+    for i in range(workspace.n_ext - workspace.n_work, workspace.n_ext):
+        weight_v[i] = control[ATOL] * work_scale[i] + control[RTOL] * max(work_scale[i], abs(row[workspace.n_ext + i]))
 
 
 @compiled
-def set_weights_at(ws: Any, ms: Any) -> None:
+def set_weights_at(workspace: Any, method: Any) -> None:
     """`set_weights`, for Python."""
-    set_weights(ws, ms)
+    set_weights(workspace, method)
 
 
 @internal
-def all_finite(ws: Any) -> bool:
+def all_finite(workspace: Any) -> bool:
     """No NaN or infinity in q, v, a, lam, nor what would make one of the energies and the other outputs."""
-    for address, count in ((ws.q, ws.n), (ws.v, ws.n_ext), (ws.a, ws.n_ext), (ws.lam, ws.m_ext - 1)):
+    for address, count in (
+        (workspace.q, workspace.n),
+        (workspace.v, workspace.n_ext),
+        (workspace.a, workspace.n_ext),
+        (workspace.lam, workspace.m_ext - 1),
+    ):
         x = vec(address, count)
         for i in range(count):
             if not abs(x[i]) < LARGEST:
@@ -120,37 +125,37 @@ def all_finite(ws: Any) -> bool:
 
 
 @compiled_unlocked
-def trial_step(ws: Any, ms: Any, lc: Any, h: float) -> int:
+def trial_step(workspace: Any, method: Any, loop: Any, h: float) -> int:
     """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
-    blind = lc.rows > 1 and history_time(ms, 0) + 2.000001 * h > vec(lc.clock, CLOCK_SIZE)[BREAK_TIME]
-    starting = rows_available(ms) < lc.rows or blind
-    choice = vec(ms.choice, CHOICE_SIZE)
-    if lc.select != 0 and choice[K] >= lc.rows and rows_available(ms) <= choice[K]:
+    blind = loop.rows > 1 and history_time(method, 0) + 2.000001 * h > vec(loop.clock, CLOCK_SIZE)[BREAK_TIME]
+    starting = rows_available(method) < loop.rows or blind
+    choice = vec(method.choice, CHOICE_SIZE)
+    if loop.select != 0 and choice[K] >= loop.rows and rows_available(method) <= choice[K]:
         # a chosen order that the history cannot serve yet
-        choice[K] = max(lc.rows, rows_available(ms)) - 1.0
-    set_weights(ws, ms)
-    rate = vec(ws.rate, RATE_SIZE)
+        choice[K] = max(loop.rows, rows_available(method)) - 1.0
+    set_weights(workspace, method)
+    rate = vec(workspace.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
     if starting:
-        status = call_step(lc.starter, ws, ms, h)
+        status = call_step(loop.starter, workspace, method, h)
     else:
-        status = step_in_frames(ws, ms, lc.step, h)
-    if status == OK and not all_finite(ws):
+        status = step_in_frames(workspace, method, loop.step, h)
+    if status == OK and not all_finite(workspace):
         return NOT_FINITE
     return status
 
 
 @internal
-def _write_log(ws: Any, ms: Any, lc: Any) -> None:
+def _write_log(workspace: Any, method: Any, loop: Any) -> None:
     """A record of the step that has just been accepted; counters are running totals."""
-    cursor = ivec(lc.log_cursor, 1)
-    row = mat(lc.log, lc.log_capacity, LOG_SIZE)[cursor[0]]
-    counters, clock = ivec(ws.counters, COUNTERS_SIZE), vec(lc.clock, CLOCK_SIZE)
-    row[0] = history_time(ms, 0)
-    row[1] = row[0] - history_time(ms, 1) if rows_available(ms) > 1 else 0.0
-    row[2] = vec(ms.error, 2)[0]
-    row[3] = vec(ms.choice, CHOICE_SIZE)[K]
+    cursor = ivec(loop.log_cursor, 1)
+    row = mat(loop.log, loop.log_capacity, LOG_SIZE)[cursor[0]]
+    counters, clock = ivec(workspace.counters, COUNTERS_SIZE), vec(loop.clock, CLOCK_SIZE)
+    row[0] = history_time(method, 0)
+    row[1] = row[0] - history_time(method, 1) if rows_available(method) > 1 else 0.0
+    row[2] = vec(method.error, 2)[0]
+    row[3] = vec(method.choice, CHOICE_SIZE)[K]
     row[4] = clock[REJECTED_HERE]
     row[5], row[6] = counters[OUTER], counters[INNER]
     row[7], row[8], row[9] = counters[FACTORIZATIONS], counters[EVALUATIONS], counters[KRYLOV]
@@ -159,77 +164,77 @@ def _write_log(ws: Any, ms: Any, lc: Any) -> None:
 
 
 @compiled
-def accept(ws: Any, ms: Any, lc: Any) -> None:
+def accept(workspace: Any, method: Any, loop: Any) -> None:
     """The current point becomes the newest row, and a sample and a step record if they are wanted."""
-    push(ws, ms)
-    remember(ws, lc)
-    doze(ws, lc)
-    go_on(ws, lc)
-    ivec(ws.counters, COUNTERS_SIZE)[STEPS] += 1
-    if lc.log_capacity > 0:
-        _write_log(ws, ms, lc)
-    if lc.capacity > 0 and ivec(ws.counters, COUNTERS_SIZE)[STEPS] % lc.stride == 0:
-        cursor = ivec(lc.cursor, 1)
-        look_at_all(ws, lc)
-        write_sample(ws, mat(lc.samples, lc.capacity, lc.sample_length)[cursor[0]])
+    push(workspace, method)
+    remember(workspace, loop)
+    doze(workspace, loop)
+    go_on(workspace, loop)
+    ivec(workspace.counters, COUNTERS_SIZE)[STEPS] += 1
+    if loop.log_capacity > 0:
+        _write_log(workspace, method, loop)
+    if loop.capacity > 0 and ivec(workspace.counters, COUNTERS_SIZE)[STEPS] % loop.stride == 0:
+        cursor = ivec(loop.cursor, 1)
+        look_at_all(workspace, loop)
+        write_sample(workspace, mat(loop.samples, loop.capacity, loop.sample_length)[cursor[0]])
         cursor[0] += 1
 
 
 @internal
-def partition_strained(ws: Any) -> bool:
+def partition_strained(workspace: Any) -> bool:
     """True if the dependent coordinates have become much more sensitive to the independent ones than they were when
     the partition was chosen: q_d(q_i) then has steep derivatives, which costs accuracy long before Phi_qd is singular.
     """
-    rate = vec(ws.rate, RATE_SIZE)
+    rate = vec(workspace.rate, RATE_SIZE)
     if rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0):
         return True
-    if ws.n_redundant > 0 and rate[CONDITION] > CHOICE_GROWTH * rate[CHOICE_CONDITION] > 0.0:
+    if workspace.n_redundant > 0 and rate[CONDITION] > CHOICE_GROWTH * rate[CHOICE_CONDITION] > 0.0:
         return True
-    if ws.m_act == 0 or ws.m_act == ws.n or rate[FACTOR_AGE] < LOOK_AGAIN:
+    if workspace.m_act == 0 or workspace.m_act == workspace.n or rate[FACTOR_AGE] < LOOK_AGAIN:
         return False
     # the sensitivity is known from the last factorisation; dependent coordinates that now move faster than the
     # independent ones are a reason to look again: the next stage factors anew
-    v, scale = vec(ws.v, ws.n_ext), vec(ws.scale, ws.n)
-    dependent = ivec(ws.dependent, ws.m_act)
+    v, scale = vec(workspace.v, workspace.n_ext), vec(workspace.scale, workspace.n)
+    dependent = ivec(workspace.dependent, workspace.m_act)
     everything, of_dependent = 0.0, 0.0
-    for i in range(ws.n):
+    for i in range(workspace.n):
         everything += (v[i] / scale[i]) ** 2
-    for k in range(ws.m_act):
+    for k in range(workspace.m_act):
         of_dependent += (v[dependent[k]] / scale[dependent[k]]) ** 2
-    if of_dependent * (ws.n - ws.m_act) > (everything - of_dependent) * ws.m_act:
+    if of_dependent * (workspace.n - workspace.m_act) > (everything - of_dependent) * workspace.m_act:
         rate[FACTOR_AGE] = -1.0
     return False
 
 
 @compiled
-def violates_redundant(ws: Any, relaxed: float) -> bool:
+def violates_redundant(workspace: Any, relaxed: float) -> bool:
     """True if the motion breaks a row that was taken for redundant."""
-    phi, redundant = vec(ws.phi, ws.m_ext), ivec(ws.redundant, ws.n_redundant)
-    row_scale = vec(ws.row_scale, ws.m_ext)
-    most = relaxed * CONTRADICTION * position_level(ws)
-    for i in range(ws.n_redundant):
+    phi, redundant = vec(workspace.phi, workspace.m_ext), ivec(workspace.redundant, workspace.n_redundant)
+    row_scale = vec(workspace.row_scale, workspace.m_ext)
+    most = relaxed * CONTRADICTION * position_level(workspace)
+    for i in range(workspace.n_redundant):
         if not abs(phi[redundant[i]]) <= most * row_scale[redundant[i]]:
             return True
     return False
 
 
 @compiled_unlocked
-def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
+def run(workspace: Any, method: Any, loop: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
-    clock = vec(lc.clock, CLOCK_SIZE)
-    counters = ivec(ws.counters, COUNTERS_SIZE)
-    error = vec(ms.error, 2)
-    control, rate = vec(ws.control, CONTROL_SIZE), vec(ws.rate, RATE_SIZE)
-    leave_bridge(ms)
+    clock = vec(loop.clock, CLOCK_SIZE)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    error = vec(method.error, 2)
+    control, rate = vec(workspace.control, CONTROL_SIZE), vec(workspace.rate, RATE_SIZE)
+    leave_bridge(method)
     for _ in range(chunk):
-        t = history_time(ms, 0)
+        t = history_time(method, 0)
         stop = clock[STOP_TIME]
         remaining = stop - t
         if t >= clock[TARGET_TIME] or remaining <= NO_STEP * abs(t):
             return REACHED
-        if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+        if loop.capacity > 0 and ivec(loop.cursor, 1)[0] >= loop.capacity:
             return FULL
-        if lc.log_capacity > 0 and ivec(lc.log_cursor, 1)[0] >= lc.log_capacity:
+        if loop.log_capacity > 0 and ivec(loop.log_cursor, 1)[0] >= loop.log_capacity:
             return FULL
         fixed = clock[FIXED_STEP] > 0.0
         wanted = clock[FIXED_STEP] if fixed else min(clock[STEP_SIZE], clock[MAX_STEP])
@@ -239,8 +244,8 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
         elif not fixed and h > 0.5 * remaining:
             h = 0.5 * remaining
         clock[TRIAL_STEP] = h
-        multistep = lc.rows > 1 and rows_available(ms) >= lc.rows
-        status = trial_step(ws, ms, lc, h)
+        multistep = loop.rows > 1 and rows_available(method) >= loop.rows
+        status = trial_step(workspace, method, loop, h)
         # a step that fails may have met the position with a stage at which no matrix was measured
         growth = control[MOST_CONDITION] if status == OK else min(control[MOST_CONDITION], STRAINED)
         near = max(growth * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
@@ -262,34 +267,34 @@ def run(ws: Any, ms: Any, lc: Any, chunk: int) -> int:
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
             continue
-        if ws.n_contacts > 0 and not fixed:
-            leap = leap_of(ws, ms, lc, h)
+        if workspace.n_contacts > 0 and not fixed:
+            leap = leap_of(workspace, method, loop, h)
             if leap > 1.0:
                 clock[STEP_SIZE], clock[HELD] = 0.9 * h / leap, 0.0
                 counters[REJECTED] += 1
                 clock[REJECTED_HERE] += 1.0
                 continue
-        if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
+        if workspace.n_redundant > 0 and violates_redundant(workspace, 1.0):
             return VIOLATED
-        if ws.n_contacts > 0 and call_find_events(lc.find_events, ws, ms, lc, h, False):
+        if workspace.n_contacts > 0 and call_find_events(loop.find_events, workspace, method, loop, h, False):
             return EVENT
         if h == remaining:
             # the stop time itself, not t + h with its rounding
-            vec(ws.t, 1)[0] = stop
-        accept(ws, ms, lc)
+            vec(workspace.t, 1)[0] = stop
+        accept(workspace, method, loop)
         if AWAY * rate[CONDITION] < rate[LOOKED_CONDITION]:
             # not within a trial: a step that leads astray would be looked at again and again
             rate[LOOKED_CONDITION] = 0.0
-        strained = partition_strained(ws)
+        strained = partition_strained(workspace)
         if not fixed:
             norm, order, hold = error[0], error[1], clock[HOLD]
-            choice = vec(ms.choice, CHOICE_SIZE)
-            if multistep and lc.select != 0:
+            choice = vec(method.choice, CHOICE_SIZE)
+            if multistep and loop.select != 0:
                 hold = choice[K] + 1.0
-                if clock[HELD] >= hold and select_in_frames(ws, ms, lc.select, h):
+                if clock[HELD] >= hold and select_in_frames(workspace, method, loop.select, h):
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
-            proposed = next_step(lc, h, norm, order, multistep, hold)
+            proposed = next_step(loop, h, norm, order, multistep, hold)
             clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
         if strained:
             return REPARTITION

@@ -1,6 +1,6 @@
 """A step of impulses: smooth motion with all contact constraints open, without a look for their events.
 
-What overlaps at its end is pending, and pushed apart there (`events/impulse_step.py`). Contacts with force laws are
+What overlaps at its end is pending, and pushed apart there (`events/moreau_jean_step.py`). Contacts with force laws are
 forces of the motion; where one begins or ends, the step ends.
 """
 
@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..event_detection.broad_phase import keep_watch
 from ..event_detection.contact_evaluation import set_travel
 from ..event_detection.contact_sleeping import sleeps_on
 from ..event_detection.trial_steps import make_trial
-from ..events.laws import FORCE
+from ..events.impact_law_codes import FORCE
 from ..events.zeno import any_force_law, end_pushing, near_level
 from ..methods.history import history_time, recall
-from ..state.modes import ACTIVE, MEMORY_SIZE, MODE, OPEN, UNWATCHED
+from ..state.modes import ACTIVE, OPEN, UNWATCHED, memories_at
 from ..state.run_records import (
     CLOCK_SIZE,
     FULL,
@@ -47,110 +47,119 @@ SHORTEST = 1e-3
 
 
 @internal
-def make_push_step(dr: Any, ws: Any, ms: Any, lc: Any) -> int:
+def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Make it and accept it; OK, REPARTITION, or the status of a step that cannot be made."""
-    if lc.capacity > 0 and ivec(lc.cursor, 1)[0] >= lc.capacity:
+    if loop.capacity > 0 and ivec(loop.cursor, 1)[0] >= loop.capacity:
         return FULL
-    if lc.log_capacity > 0 and ivec(lc.log_cursor, 1)[0] >= lc.log_capacity:
+    if loop.log_capacity > 0 and ivec(loop.log_cursor, 1)[0] >= loop.log_capacity:
         return FULL
-    clock, t, error = vec(lc.clock, CLOCK_SIZE), history_time(ms, 0), vec(ms.error, 2)
-    remaining, forces = clock[STOP_TIME] - t, any_force_law(dr, ws)
+    clock, t, error = vec(loop.clock, CLOCK_SIZE), history_time(method, 0), vec(method.error, 2)
+    remaining, forces = clock[STOP_TIME] - t, any_force_law(drive, workspace)
     h = min(clock[PUSH_STEP], remaining)
-    if forces and _any_acts(ws):
+    if forces and _any_acts(workspace):
         h = min(h, clock[STEP_SIZE])
     if remaining > h > 0.5 * remaining:
         h = 0.5 * remaining
     least = SHORTEST * min(clock[PUSH_STEP], remaining)
     while True:
-        recall(ws, ms, 0)
-        vec(dr.last_trial, 1)[0] = -1.0
-        status = make_trial(dr, ws, ms, lc, h, np.inf)
+        recall(workspace, method, 0)
+        vec(drive.last_trial, 1)[0] = -1.0
+        status = make_trial(drive, workspace, method, loop, h, np.inf)
         if status == OK and error[0] <= 1.0:
             break
         if h <= least:
             return status
         h *= 0.25
     clock[TRIAL_STEP] = h
-    if ws.n_redundant > 0 and violates_redundant(ws, 1.0):
+    if workspace.n_redundant > 0 and violates_redundant(workspace, 1.0):
         return VIOLATED
     status = NONE
     if forces:
         clock[STEP_SIZE] = h * step_factor(error[0], error[1], MAX_FACTOR)
-        status = _end_at_forces(dr, ws, ms, lc, h)
+        status = _end_at_forces(drive, workspace, method, loop, h)
         if status != OK and status != NONE:
             return status
     if status == NONE:
         if h == remaining:
-            vec(ws.t, 1)[0] = clock[STOP_TIME]
-        set_travel(ws, ms, lc, h)
-        keep_watch(ws, ms, lc)
-        touches = _find_touching(dr, ws, ms, lc, h, False)
+            vec(workspace.t, 1)[0] = clock[STOP_TIME]
+        set_travel(workspace, method, loop, h)
+        keep_watch(workspace, method, loop)
+        touches = _find_touching(drive, workspace, method, loop, h, False)
         # a sample of what overlaps is none: `settle` makes one of what is left of it
-        kept, lc.capacity = lc.capacity, 0 if touches else lc.capacity
-        call_accept(dr.accept, ws, ms, lc)
-        lc.capacity = kept
+        kept, loop.capacity = loop.capacity, 0 if touches else loop.capacity
+        call_accept(drive.accept, workspace, method, loop)
+        loop.capacity = kept
     else:
-        now = history_time(ms, 0)
+        now = history_time(method, 0)
         if now == t:
             # at once: no step has been made
             return OK
-        touches = _find_touching(dr, ws, ms, lc, now - t, True)
-    ivec(ws.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
+        touches = _find_touching(drive, workspace, method, loop, now - t, True)
+    ivec(workspace.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
     clock[PUSHED_FROM] = t
     clock[PUSHES_LEFT] -= 1.0
     if not touches:
         # nothing is left of the crowd
-        end_pushing(ws, lc, history_time(ms, 0))
-    return REPARTITION if partition_strained(ws) else OK
+        end_pushing(workspace, loop, history_time(method, 0))
+    return REPARTITION if partition_strained(workspace) else OK
 
 
 @internal
-def _any_acts(ws: Any) -> bool:
+def _any_acts(workspace: Any) -> bool:
     """True if a force law acts now."""
-    memory = mat(ws.memory, ws.n_contacts, MEMORY_SIZE)
-    for k in range(ws.n_contacts):
-        if memory[k, MODE] == ACTIVE:
+    memory = memories_at(workspace.memory, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
+        if memory[k].mode == ACTIVE:
             return True
     return False
 
 
 @internal
-def _find_touching(dr: Any, ws: Any, ms: Any, lc: Any, h: float, accepted: bool) -> bool:
+def _find_touching(drive: Any, workspace: Any, method: Any, loop: Any, h: float, accepted: bool) -> bool:
     """Constraint contacts that touch at the end of the step of h (s) become pending, and those that are so near that
     they may overlap once others are pushed apart; True if any touches. `accepted`: so is the step."""
-    level, rows, phi = near_level(ws, h), ivec(ws.contact_rows, ws.n_contacts), vec(ws.phi, ws.m_ext)
-    pending, scale, touches, deepest = ivec(dr.pending, ws.n_contacts), vec(ws.row_scale, ws.m_ext), False, 0.0
-    law, sleeping = ivec(dr.law, ws.n_contacts), ivec(ws.sleeping, ws.n_contacts)
-    for k in range(ws.n_contacts):
+    level, rows, phi = (
+        near_level(workspace, h),
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        vec(workspace.phi, workspace.m_ext),
+    )
+    pending, scale, touches, deepest = (
+        ivec(drive.pending, workspace.n_contacts),
+        vec(workspace.row_scale, workspace.m_ext),
+        False,
+        0.0,
+    )
+    law, sleeping = ivec(drive.law, workspace.n_contacts), ivec(workspace.sleeping, workspace.n_contacts)
+    for k in range(workspace.n_contacts):
         if law[k] == FORCE:
             continue
         pending[k] = 0
-        sleeps = sleeping[k] != 0 if accepted else sleeps_on(ws, ms, lc, k)
+        sleeps = sleeping[k] != 0 if accepted else sleeps_on(workspace, method, loop, k)
         if not sleeps and phi[rows[k]] <= level * scale[rows[k]]:
             pending[k], touches, deepest = 1, True, max(deepest, -phi[rows[k]])
-    for k in range(ws.n_contacts):
+    for k in range(workspace.n_contacts):
         if law[k] != FORCE and sleeping[k] == 0 and phi[rows[k]] <= NEAR * deepest:
             pending[k] = 1
     return touches
 
 
 @internal
-def _end_at_forces(dr: Any, ws: Any, ms: Any, lc: Any, h: float) -> int:
+def _end_at_forces(drive: Any, workspace: Any, method: Any, loop: Any, h: float) -> int:
     """If a force law begins or ends within the step of h (s) to the current point, end it there, accept that, and let
     it be pending, at once where it is so at the step's start; NONE: nothing of that; else why it cannot."""
-    memory, law = mat(ws.memory, ws.n_contacts, MEMORY_SIZE), ivec(dr.law, ws.n_contacts)
-    starter, rows, kept = lc.starter, lc.rows, lc.capacity
-    for k in range(ws.n_contacts):
+    memory, law = memories_at(workspace.memory, workspace.n_contacts), ivec(drive.law, workspace.n_contacts)
+    starter, rows, kept = loop.starter, loop.rows, loop.capacity
+    for k in range(workspace.n_contacts):
         if law[k] != FORCE:
-            memory[k, MODE] = UNWATCHED
+            memory[k].mode = UNWATCHED
     status = NONE
-    if call_find_events(lc.find_events, ws, ms, lc, h, False):
-        lc.capacity = 0
+    if call_find_events(loop.find_events, workspace, method, loop, h, False):
+        loop.capacity = 0
         if rows > 1:
-            lc.starter, lc.rows = lc.fine_starter, ONE_STEP
-        status = call_locate(dr.locate, dr, False)
-        lc.starter, lc.rows, lc.capacity = starter, rows, kept
-    for k in range(ws.n_contacts):
+            loop.starter, loop.rows = loop.fine_starter, ONE_STEP
+        status = call_locate(drive.locate, drive, False)
+        loop.starter, loop.rows, loop.capacity = starter, rows, kept
+    for k in range(workspace.n_contacts):
         if law[k] != FORCE:
-            memory[k, MODE] = OPEN
+            memory[k].mode = OPEN
     return int(status)

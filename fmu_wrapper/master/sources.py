@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...core.description import Model
+from ...core.multibody_model import Model
 from ..extras import require
 from ..slave import Slave
 from .description import InstanceRecord

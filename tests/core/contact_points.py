@@ -2,7 +2,7 @@
 
 import numpy as np
 from test_tangents import Point, check_levels, check_matrix
-from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, AXIS, CLOSED, MODE, SLIDE, SLIDE_START, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, CLOSED, STICKS
 
 
 class ContactPoint(Point):
@@ -10,8 +10,7 @@ class ContactPoint(Point):
 
     def __init__(self, model, mode, slide=0.0, stuck_at=0.0):
         super().__init__(model)
-        memory = self.workspace.arrays["memory"]
-        memory[0, [MODE, APPROACH_SPEED, SLIDE, SLIDE_START]] = mode, 0.9, slide, stuck_at
+        self.remember(("mode", "approach_speed", "slide_mode", "slide_start"), (mode, 0.9, slide, stuck_at))
         one, none = frozenset({0}), frozenset()
         sticks = mode == CLOSED and slide == 0.0 and self.m > 1
         self.workspace.engage(one if mode == CLOSED else none, one, one if sticks else none)
@@ -72,7 +71,7 @@ def check_in_space(closed, rubbing, sticking, states):
     point = Point(closed, CLOSED)
     rubbing, sticking = Point(rubbing, ACTIVE), Point(sticking)
     sticking.workspace.engage(frozenset({0}), frozenset(), frozenset({0, 1}))
-    sticking.workspace.arrays["memory"][0, [MODE, SLIDE, WAY, AXIS]] = CLOSED, STICKS, 0.7, 2
+    sticking.remember(("mode", "slide_mode", "tangent_angle", "tangent_axis"), (CLOSED, STICKS, 0.7, 2))
     for state in states(point):
         check_matrix(point, state, h=1e-3)
         check_levels(point, state, 1e-3)

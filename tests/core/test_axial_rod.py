@@ -286,7 +286,7 @@ def test_a_run_goes_on_bit_for_bit_from_a_state_stored_while_a_massless_end_is_c
     first, again = (Simulation(model, "newmark", step=h) for _ in range(2))
     first.run_to(0.2, until=0.12)
     state = first.state()
-    assert first.memory[0, 0] == 1.0
+    assert first.memory.mode[0] == 1.0
     first.run_to(0.2)
     again.restore(state)
     again.run_to(0.2)

@@ -9,16 +9,7 @@ from helpers import GROUND, on, order
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from scipy.optimize import root
-from tlismni.core import (
-    AppliedForce2D,
-    AppliedTorque2D,
-    Cable2D,
-    Clamp2D,
-    Constant,
-    MaterialPoint2D,
-    Model,
-    Revolute2D,
-)
+from tlismni.core import AppliedForce2D, AppliedTorque2D, Cable2D, Clamp2D, Constant, MaterialPoint2D, Model, Revolute2D
 
 STILL = (0.0, 0.0)
 

@@ -16,7 +16,7 @@ from tlismni.core import (
     Sphere3D,
     SphereOnCable3D,
 )
-from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, CLOSED, STICKS
 
 SPAN = 2e-3
 CLOSE = 1e-7
@@ -102,8 +102,8 @@ def test_tangent_and_rates_of_coulomb_friction(case, slides):
     twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
     axis = 1 if build is plane else 2
-    columns = [MODE, SLIDE, RATIO, WAY, AXIS]
-    point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
+    columns = ["mode", "slide_mode", "friction_ratio", "tangent_angle", "tangent_axis"]
+    point.remember(columns, (CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis))
     n, active = point.n, point.workspace.structure.active
     rows = point.workspace.assembly.contacts[0].slide_row + np.arange(2)
     found = 0

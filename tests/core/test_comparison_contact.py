@@ -8,16 +8,7 @@ from helpers import GROUND, G, ball_over_floor, events, on, residuals
 from scipy.integrate import solve_ivp
 from test_comparison_methods import VARIANTS, run
 from test_pendulum_stop import IMPACTS, T_END, E
-from tlismni.core import (
-    Disk2D,
-    DiskOnDisk2D,
-    Flores,
-    Model,
-    NewtonImpact,
-    PointMass2D,
-    SimulationError,
-    simulate,
-)
+from tlismni.core import Disk2D, DiskOnDisk2D, Flores, Model, NewtonImpact, PointMass2D, SimulationError, simulate
 from tlismni.models import load
 
 INDEX_3 = ("hht_i3", "generalized_alpha index3")

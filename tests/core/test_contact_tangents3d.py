@@ -25,7 +25,7 @@ from tlismni.core import (
     TurningFriction,
 )
 from tlismni.core.contacts.coulomb3d import TURNED
-from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, IDLE, LEAN, MODE, RATIO, SLIDE, SLOW, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, CLOSED, IDLE, STICKS
 
 HARD = NewtonImpact(restitution=0.5)
 TANH = TanhFriction(coefficient=0.6, transition_speed=2.0)
@@ -168,11 +168,11 @@ def gripping(shape, where, slide, turning=None):
         twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
         point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
         axis = 1 if shape in (on_plane, on_belt) else (3 if where == "a point mass" else 2)
-        columns = [MODE, SLIDE, RATIO, WAY, AXIS, LEAN]
+        columns = ["mode", "slide_mode", "friction_ratio", "tangent_angle", "tangent_axis", "sliding_lean"]
         lean = 0.5 if slide == 1.0 and turning is PATCH else 0.0
-        point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis, lean
+        point.remember(columns, (CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis, lean))
         if turning is PATCH:  # sticking creeps with a speed that differences see
-            point.workspace.arrays["memory"][0, SLOW] = 0.4
+            point.remember(["slow_sliding"], [0.4])
     return point
 
 

@@ -7,17 +7,7 @@ import pytest
 from helpers import G, events
 from scipy.optimize import brentq
 from sliders import Belt, foot, kinds, roller, slider
-from tlismni.core import (
-    Constant,
-    HalfPlane2D,
-    Marker2D,
-    Model,
-    NewtonImpact,
-    Ramp,
-    RigidBody2D,
-    Sine,
-    simulate,
-)
+from tlismni.core import Constant, HalfPlane2D, Marker2D, Model, NewtonImpact, Ramp, RigidBody2D, Sine, simulate
 
 MU = 0.3
 

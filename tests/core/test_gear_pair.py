@@ -5,16 +5,7 @@ import math
 import numpy as np
 import pytest
 from helpers import GROUND, on
-from tlismni.core import (
-    AppliedTorque2D,
-    Constant,
-    Gear2D,
-    Model,
-    ModelError,
-    Revolute2D,
-    RigidBody2D,
-    simulate,
-)
+from tlismni.core import AppliedTorque2D, Constant, Gear2D, Model, ModelError, Revolute2D, RigidBody2D, simulate
 
 LEVELS = ("residual.position", "residual.velocity", "residual.acceleration")
 

@@ -84,9 +84,9 @@ def test_no_circle_of_imports(graph):
 
 def test_it_would_be_found(graph):
     """Imports inside functions count, and those of the real files are seen."""
-    assert "core.assembly.assembly" in graph["core.description"]
-    assert "core.simulation.simulation" in graph["core.one_run"]
-    assert circle({**graph, "core.errors": {"core.one_run"}}) is not None
+    assert "core.assembly.assembly" in graph["core.multibody_model"]
+    assert "core.simulation.simulation" in graph["core.simulate_one"]
+    assert circle({**graph, "core.errors": {"core.simulate_one"}}) is not None
 
 
 def test_arrows_between_folders_point_one_way(folders):

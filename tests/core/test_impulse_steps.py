@@ -31,7 +31,7 @@ from tlismni.core import (
 from tlismni.core.contact_solvers.contact_blocks import pack_contacts
 from tlismni.core.contact_solvers.row_sweeps import list_columns, press_apart, sweep_rows
 from tlismni.core.events.zeno import SIZE
-from tlismni.core.state.modes import CLOSED, MODE, PUSHED
+from tlismni.core.state.modes import CLOSED
 from tlismni.core.state.modes import PUSHES as PUSHES_OF_A_CONTACT
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT
 
@@ -45,7 +45,7 @@ def in_steps(model, step=None, method="ebdf", **options):
     clock = sim.clock
     clock[PUSH_STEP], clock[PUSHES] = step or SIZE * sim.scales.time, 1e9
     clock[PUSHES_LEFT], clock[PUSHED_FROM] = 1e9, sim.t_internal
-    sim.drive.pending[:] = sim.memory[:, MODE] == CLOSED
+    sim.drive.pending[:] = sim.memory.mode == CLOSED
     return sim
 
 
@@ -197,7 +197,7 @@ def test_a_state_within_the_steps_goes_on_alike():
     assert np.array_equal(later, sim.values())
     for k in range(PUSHES_OF_A_CONTACT):
         sim.restore(state)
-        sim.memory[0, PUSHED + k] += 1.0
+        sim.memory.step_force[k][0] += 1.0
         assert sim.state() != state
 
 

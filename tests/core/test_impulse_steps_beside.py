@@ -28,7 +28,7 @@ from tlismni.core import (
     contacts_between,
 )
 from tlismni.core.events.zeno import SIZE
-from tlismni.core.state.modes import CLOSED, IMPULSE_JUMP, MODE
+from tlismni.core.state.modes import CLOSED
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT, STEP_SIZE
 
 G, WIDTH, BAR = 9.81, 0.36, 0.1
@@ -100,7 +100,7 @@ def go_in_steps(sim, end, size=1.0, each=10):
             clock[PUSH_STEP] = clock[STEP_SIZE] = step
             clock[PUSHES] = clock[PUSHES_LEFT] = 1e9
             clock[PUSHED_FROM] = sim.t_internal
-            sim.pending = [int(k) for k in np.flatnonzero(sim.memory[:, MODE] == CLOSED)]
+            sim.pending = [int(k) for k in np.flatnonzero(sim.memory.mode == CLOSED)]
         t = min(t + each * step, end)
         sim.advance(t)
 
@@ -125,7 +125,7 @@ def out_of_balance(sim, model, masses):
     for k, (contact, info) in enumerate(zip(model.contacts, sim.assembly.contacts, strict=True)):
         if hasattr(contact, "plane"):
             normal = np.array(contact.plane.marker.attitude.z, dtype=float)
-            received += normal * (v[info.impulse_account] + sim.memory[k, IMPULSE_JUMP])
+            received += normal * (v[info.impulse_account] + sim.memory.impulse_jump[k])
     momentum = masses @ v[: 7 * len(masses)].reshape(-1, 7)[:, :3]
     return momentum - masses.sum() * np.array(model.gravity) * sim.t_internal - received
 

@@ -35,7 +35,7 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.contacts.box2d import box_gap, box_slide
+from tlismni.core.contacts.disk_on_box2d import box_gap, box_slide
 from tlismni.core.contacts.polygon2d import polygon_gap, polygon_slide
 from tlismni.core.contacts.ring2d import ring_slide
 from tlismni.core.elements import Frame2D

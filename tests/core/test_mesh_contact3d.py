@@ -30,7 +30,7 @@ from tlismni.core import (
     mesh_parts,
     simulate,
 )
-from tlismni.core.state.modes import ACTIVE, AXIS, CLOSED, MODE, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, CLOSED, STICKS
 
 DOWN = (0.0, 0.0, -9.81)
 BALL = Sphere3D(marker=Marker3D(body="ball"), radius=0.1)
@@ -191,7 +191,7 @@ def test_tangents_and_levels(where):
 def test_tangents_of_friction(where):
     rubbing, sticking = Point(falling(where, HUNT, PEAK), ACTIVE), Point(falling(where, HARD, GRIP))
     sticking.workspace.engage(frozenset({0}), frozenset(), frozenset({0, 1}))
-    sticking.workspace.arrays["memory"][0, [MODE, SLIDE, WAY, AXIS]] = CLOSED, STICKS, 0.7, 2
+    sticking.remember(("mode", "slide_mode", "tangent_angle", "tangent_axis"), (CLOSED, STICKS, 0.7, 2))
     for point in (rubbing, sticking):
         for state in states(point):
             check_tangent(point, state)

@@ -27,12 +27,12 @@ def build(name, t_end=None, **parameters):
 def jumping_model():
     """A pendulum with a marker at its end, pushed from 0.2 to 0.6 s, above a floor."""
     from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-    from tlismni.core.description import Model
     from tlismni.core.elements import AppliedForce2D, Revolute2D, RigidBody2D
     from tlismni.core.laws import NewtonImpact
     from tlismni.core.model.markers import Marker2D
     from tlismni.core.model.outputs import MarkerOutput2D
     from tlismni.core.model.signals import Step
+    from tlismni.core.multibody_model import Model
 
     end = Marker2D(body="bar", point=(0.5, 0.0), angle=0.3)
     return Model(

@@ -16,7 +16,7 @@ from tlismni.core import (
     contacts_between,
     simulate,
 )
-from tlismni.core.contacts.crossing3d import BACK
+from tlismni.core.contacts.parallel_axes3d import BACK
 from tlismni.core.contacts.round3d import SHORTER
 
 L, R, G = 0.6, 0.1, 9.81

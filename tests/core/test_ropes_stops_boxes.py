@@ -181,7 +181,7 @@ def test_a_polygon_of_four_corners_acts_as_a_box(place):
 
 def test_the_sliding_distance_goes_on_round_the_box():
     """Once round without a jump: the whole is the outline with arcs of the disk's radius at the corners."""
-    from tlismni.core.contacts.box2d import box_slide
+    from tlismni.core.contacts.disk_on_box2d import box_slide
     from tlismni.core.elements import Frame2D
 
     radius, box = 0.1, Frame2D(0.0, 0.0, 0.0, 1.0, 0.0)

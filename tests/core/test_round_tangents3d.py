@@ -26,7 +26,7 @@ from tlismni.core import (
     SphereOnSmooth3D,
     Torus3D,
 )
-from tlismni.core.state.modes import ACTIVE, AT_LIMIT, AXIS, CLOSED, MODE, RATIO, SLIDE, STICKS, WAY
+from tlismni.core.state.modes import ACTIVE, AT_LIMIT, CLOSED, STICKS
 
 SPAN = 1e-3
 """Of the differences: these gaps bend more than those of spheres."""
@@ -124,9 +124,9 @@ def gripping(name, slide):
     point = Point(system(SHAPES[name](law=HARD, friction=GRIP)))
     twice = {STICKS: {0, 1}, AT_LIMIT: {0}}.get(slide, set())
     point.workspace.engage(frozenset({0}), frozenset(), frozenset(twice))
-    columns = [MODE, SLIDE, RATIO, WAY, AXIS]
+    columns = ["mode", "slide_mode", "friction_ratio", "tangent_angle", "tangent_axis"]
     axis = 1 if name in ("ellipsoid", "torus", "rim") else 2
-    point.workspace.arrays["memory"][0, columns] = CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis
+    point.remember(columns, (CLOSED, slide, -0.4 if slide == 1.0 else 0.3, 0.7, axis))
     return point
 
 

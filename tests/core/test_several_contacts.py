@@ -24,7 +24,7 @@ from tlismni.core import (
 from tlismni.core.compiled.jit import compiled
 from tlismni.core.event_detection.repivoting import orientation
 from tlismni.core.stage.joints import evaluate_joints
-from tlismni.core.state.modes import CLOSED, IDLE, MODE, RATIO, SLIDE
+from tlismni.core.state.modes import CLOSED, IDLE
 
 WIDTH, HEIGHT, MASS = 0.4, 0.6, 3.0
 
@@ -254,11 +254,11 @@ def test_constant_share_of_a_held_contact_is_no_jam(ratio):
     sim = Simulation(Model(bodies=bodies, contacts=feet, forces=[push]))
     sim.advance(1e-3)
     ws, memory = sim.workspace, sim.memory
-    held = np.flatnonzero((memory[:, MODE] == CLOSED) & (memory[:, SLIDE] == IDLE))
-    assert list(held) in ([0], [1]) and all(np.abs(memory[2:, SLIDE]) == 1.0)
+    held = np.flatnonzero((memory.mode == CLOSED) & (memory.slide_mode == IDLE))
+    assert list(held) in ([0], [1]) and all(np.abs(memory.slide_mode[2:]) == 1.0)
     with_share, signs, n = [], [], sim.assembly.n + ws.structure.m_act
     for share in (0.0, ratio):
-        memory[held, RATIO] = share
+        memory.friction_ratio[held] = share
         before = memory.tobytes()
         signs.append(side(ws.record))
         assert memory.tobytes() == before

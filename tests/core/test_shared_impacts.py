@@ -20,7 +20,7 @@ from tlismni.core import (
     RigidBody2D,
     simulate,
 )
-from tlismni.core.events.impact_rounds import MOST_BOUNCES
+from tlismni.core.events.impact_retries import MOST_BOUNCES
 
 # ---- chains of balls ------------------------------------------------------------------------------------------------
 

@@ -20,7 +20,7 @@ from tlismni.core import (
     SphereOnSphere3D,
     simulate,
 )
-from tlismni.core.events.impact_rounds import MOST_BOUNCES
+from tlismni.core.events.impact_retries import MOST_BOUNCES
 
 ANYTHING = 1e9
 CLOSE = 1e-10

@@ -39,7 +39,7 @@ from tlismni.core import (
     simulate,
     simulate_many,
 )
-from tlismni.core.contacts.box2d import Box2D
+from tlismni.core.contacts.disk_on_box2d import Box2D
 from units import Units
 
 MU, STATIC, SPEED, MASS = 0.3, 0.4, 0.9, 2.0

@@ -46,7 +46,7 @@ from tlismni.core import (
 )
 from tlismni.core.assembly.evaluate import evaluate_residuals, evaluate_tangent
 from tlismni.core.assembly.workspace import Workspace
-from tlismni.core.state.modes import ACTIVE, APPROACH_SPEED, CLOSED, LAID_MASS, MODE
+from tlismni.core.state.modes import ACTIVE, CLOSED, contact_memories
 
 quick = settings(deadline=None, max_examples=8, derandomize=True)
 
@@ -186,9 +186,9 @@ class Point:
         if mode is not None:
             closed, engaged = (frozenset({0}) if mode == m else frozenset() for m in (CLOSED, ACTIVE))
             self.workspace.engage(closed, engaged)
-            self.workspace.arrays["memory"][0, [MODE, APPROACH_SPEED]] = mode, 0.9
+            self.remember(("mode", "approach_speed"), (mode, 0.9))
             if mode == ACTIVE:
-                self.workspace.arrays["memory"][0, LAID_MASS] = laid
+                self.remember(("laid_mass",), (laid,))
         self.n, self.m = self.workspace.assembly.n, self.workspace.assembly.m
 
     def _put(self, *state):
@@ -202,6 +202,12 @@ class Point:
     def _results(self):
         arrays = self.workspace.arrays
         return (arrays["r"][: self.n], *(arrays[x][: self.m] for x in ("phi", "phid", "phidd")))
+
+    def remember(self, names, values):
+        """Fields of the memory of the first contact."""
+        memory = contact_memories(self.workspace.arrays["memory"])
+        for name, value in zip(names, values, strict=True):
+            memory[name][0] = value
 
     def at(self, t, q, v, a, lam):
         """r and the residuals of the three levels."""

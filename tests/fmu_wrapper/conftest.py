@@ -9,7 +9,7 @@ import pytest
 import tlismni.core
 from fake_simulation import FakeSimulation
 from fmu_helpers import Messages, ball_model
-from tlismni.core.description import Model
+from tlismni.core.multibody_model import Model
 from tlismni.fmu_wrapper import Slave, export_fmu
 
 

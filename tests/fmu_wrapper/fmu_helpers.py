@@ -1,13 +1,13 @@
 """Models and a log for the tests of the FMU wrapper."""
 
 from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.description import Model
 from tlismni.core.elements import AppliedForce2D, PointMass2D
 from tlismni.core.laws import LAWS, NewtonImpact
 from tlismni.core.methods.registry import METHODS as REGISTRY
 from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.multibody_model import Model
 
 METHODS = list(REGISTRY)
 """Items of `solver.method`: its values are 0, 1, ..."""

@@ -10,10 +10,10 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from lxml import etree
-from tlismni.core.description import Model
 from tlismni.core.elements import CoordinateDriver, PointMass2D
 from tlismni.core.model.channels import Input
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.multibody_model import Model
 from tlismni.fmu_wrapper import export_fmu
 
 

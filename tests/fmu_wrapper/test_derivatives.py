@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from fmu_helpers import ball_model
 from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
-from tlismni.core.description import Model
 from tlismni.core.elements import AppliedForce2D, CoordinateDriver, PointMass2D, RigidBody2D
 from tlismni.core.errors import TlismniError
 from tlismni.core.laws import KelvinVoigt, NewtonImpact
@@ -17,6 +16,7 @@ from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.multibody_model import Model
 from tlismni.fmu_wrapper import CallOrderError, FmuValueError, Slave, export_fmu
 from tlismni.models import load
 

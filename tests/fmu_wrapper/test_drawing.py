@@ -5,9 +5,9 @@ import struct
 
 import pytest
 from fmu_helpers import ball_model
-from tlismni.core.description import Model
 from tlismni.core.elements import Gear2D, RigidBody2D
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.multibody_model import Model
 from tlismni.models import load, names
 from tlismni.viewer.drawing import draw, to_png, to_svg
 from tlismni.viewer.drawing.mechanism import add_surroundings, round_length

@@ -16,8 +16,8 @@ from fake_simulation import FakeSimulation
 from fmpy.validation import validate_fmu
 from fmu_helpers import LAW_NAMES, METHODS, ball_model
 from lxml import etree
-from tlismni.core.description import Model
 from tlismni.core.errors import ModelError
+from tlismni.core.multibody_model import Model
 from tlismni.fmu_wrapper import ExportError, FmuValueError, archive, export_fmu
 from tlismni.fmu_wrapper.export import c_identifier
 

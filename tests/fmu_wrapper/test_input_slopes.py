@@ -6,11 +6,11 @@ import pytest
 from fmpy.fmi2 import FMU2Slave
 from fmu_helpers import ball_model
 from tlismni.core import Simulation
-from tlismni.core.description import Model
 from tlismni.core.elements import AppliedForce2D, PointMass2D
 from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.multibody_model import Model
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.in_process import InProcess
 

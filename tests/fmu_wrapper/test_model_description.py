@@ -12,7 +12,6 @@ from fmu_helpers import ball_model
 from lxml import etree
 from tlismni.core import Simulation, simulate
 from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D
-from tlismni.core.description import Model
 from tlismni.core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -29,6 +28,7 @@ from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
+from tlismni.core.multibody_model import Model
 from tlismni.core.source_digests import core_digest
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.dependencies import Dependencies

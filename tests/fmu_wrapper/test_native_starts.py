@@ -5,18 +5,11 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from native_pair import Pair, scenario_pair, step_alike
 from tlismni.core.compiled.library import LIBRARY
-from tlismni.core.description import Model
-from tlismni.core.elements import (
-    AngleDriver3D,
-    AppliedForce2D,
-    PointMass2D,
-    Revolute3D,
-    RigidBody3D,
-    TorsionSpring3D,
-)
+from tlismni.core.elements import AngleDriver3D, AppliedForce2D, PointMass2D, Revolute3D, RigidBody3D, TorsionSpring3D
 from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D, Marker3D
 from tlismni.core.model.signals import InputSignal, Polynomial, Step
+from tlismni.core.multibody_model import Model
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 

@@ -7,18 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core.assembly.evaluate import evaluate_residuals
 from tlismni.core.assembly.workspace import Workspace
-from tlismni.core.description import Model
-from tlismni.core.elements import (
-    Clamp2D,
-    CoordinateDriver,
-    Distance2D,
-    Joint3D,
-    PlanarFrame,
-    Prismatic2D,
-    Revolute2D,
-)
+from tlismni.core.elements import Clamp2D, CoordinateDriver, Distance2D, Joint3D, PlanarFrame, Prismatic2D, Revolute2D
 from tlismni.core.laws import KelvinVoigt
 from tlismni.core.laws.damping_ratio import restitution_without_pull
+from tlismni.core.multibody_model import Model
 from tlismni.models import ScenarioError, catalogue, load, names
 from tlismni.models.laws import LAW_NAMES, kelvin_voigt_damping_ratio
 from tlismni.models.parameters import ScenarioParameter

@@ -1,8 +1,8 @@
 """Conservation of momentum in exudyn runs."""
 
 import numpy as np
-from tlismni.core.description import Model
 from tlismni.core.elements import RigidBody2D
+from tlismni.core.multibody_model import Model
 from tlismni.validation.exudyn_run import run_exudyn
 
 

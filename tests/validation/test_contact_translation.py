@@ -11,7 +11,6 @@ from scipy.optimize import brentq
 from tlismni.core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.contacts.disk_on_line import DiskOnLine2D, Line2D
 from tlismni.core.contacts.segment2d import DiskOnSegment2D, Segment2D
-from tlismni.core.description import Model
 from tlismni.core.elements import AxialRod, FloatingBeam2D, PointMass2D, Prismatic2D, RigidBody2D
 from tlismni.core.laws import (
     CarvalhoMartins,
@@ -25,6 +24,7 @@ from tlismni.core.laws import (
 from tlismni.core.laws.damping_ratio import restitution_without_pull
 from tlismni.core.laws.friction import TanhFriction
 from tlismni.core.model.markers import Marker2D
+from tlismni.core.multibody_model import Model
 from tlismni.validation.errors import ExudynUnavailable, NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available, import_exudyn
 from tlismni.validation.exudyn_model import build_exudyn_model

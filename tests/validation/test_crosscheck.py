@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tlismni.core.description import Model
 from tlismni.core.elements import PointMass2D
+from tlismni.core.multibody_model import Model
 from tlismni.models import ScenarioError, load
 from tlismni.validation import CrossCheck, ExudynUnavailable, NotTranslatable, Row, crosscheck
 from tlismni.validation.exudyn_import import exudyn_available

@@ -8,8 +8,8 @@ import pytest
 from momentum import momentum_drift
 from tlismni.core import AxisAngles, Model, simulate
 from tlismni.core.contacts import CONTACTS, AngleStop2D, DiskInRing2D, DiskOnBox2D, DiskOnPolygon2D, Rope2D
-from tlismni.core.contacts.box2d import Box2D
 from tlismni.core.contacts.contact2d import Disk2D
+from tlismni.core.contacts.disk_on_box2d import Box2D
 from tlismni.core.contacts.polygon2d import Polygon2D
 from tlismni.core.contacts.ring2d import Ring2D
 from tlismni.core.elements import (

@@ -9,7 +9,6 @@ from momentum import momentum_drift
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 from tlismni.core import simulate
-from tlismni.core.description import Model
 from tlismni.core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -28,6 +27,7 @@ from tlismni.core.elements import (
 from tlismni.core.model.channels import Input
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal, Polynomial, Ramp, Sine, Step, Table
+from tlismni.core.multibody_model import Model
 from tlismni.models import load
 from tlismni.validation.errors import NotTranslatable
 from tlismni.validation.exudyn_import import exudyn_available

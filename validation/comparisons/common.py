@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 
 from ...core import Event, Result, simulate
-from ...core.description import Model
 from ...core.elements import AxialRod, Cable2D, FloatingBody2D
+from ...core.multibody_model import Model
 from ...models.scenario import Scenario
 from ..metrics import hermite
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...core import ForceLaw, Result
-from ...core.description import Model
+from ...core.multibody_model import Model
 from ..exudyn_run import ExudynResult
 from ..metrics import contact_intervals, impulse, peak, released, speeds, trajectory_difference
 from .common import (

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...core import KelvinVoigt, Result
-from ...core.description import Model
+from ...core.multibody_model import Model
 from .common import RATES, Row, Touch, nice_step
 
 STEPS_IN_CONTACT = 200

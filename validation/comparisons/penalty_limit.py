@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core import Gonthier, NewtonImpact, Result
-from ...core.description import Model
 from ...core.laws.friction import CoulombFriction
+from ...core.multibody_model import Model
 from ..errors import NotTranslatable
 from ..exudyn_run import ExudynResult
 from ..metrics import ContactInterval, contact_intervals, impulse, power_limit, speeds

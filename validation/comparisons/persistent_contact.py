@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from ...core import Result
-from ...core.description import Model
 from ...core.elements import FlexibleBody
 from ...core.laws import Gonthier, ImpactLaw, KelvinVoigt
 from ...core.laws.friction import CoulombFriction
+from ...core.multibody_model import Model
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for
 from ..metrics import trajectory_difference
 from ..translation.formulas import StickingCoulomb

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core import Result
-from ...core.description import Model
 from ...core.laws.friction import CoulombFriction
+from ...core.multibody_model import Model
 
 LEAST = 1e-6
 """m/s: slower sliding is none."""

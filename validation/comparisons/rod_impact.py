@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from ...core import Result, simulate
-from ...core.description import Model
 from ...core.elements import AxialRod
 from ...core.laws import Hertz, ImpactLaw
+from ...core.multibody_model import Model
 from ...models import Scenario, load
 from ..errors import NotTranslatable
 from ..exudyn_run import ExudynResult, run_exudyn, settings_for

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ...core import NewtonImpact, Result
-from ...core.description import Model
 from ...core.elements import PointMass2D, RigidBody2D
+from ...core.multibody_model import Model
 from ..exudyn_model import build_exudyn_model
 from ..exudyn_run import ExudynSettings, solve
 from ..translation.user_gaps import user_gap

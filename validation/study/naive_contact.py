@@ -5,7 +5,7 @@ For the study of failures only. The contact opens when its multiplier has become
 
 from ...core import Simulation
 from ...core.events import Event
-from ...core.state.modes import CLOSED, MODE, OPEN
+from ...core.state.modes import CLOSED, OPEN
 
 
 class NoVelocityJump(Simulation):
@@ -15,12 +15,12 @@ class NoVelocityJump(Simulation):
         """Switch constraints on and off; velocities stay as they are."""
         for k in pending:
             rate, contact = self.gap_rate(k), self.assembly.contacts[k]
-            closes = self.memory[k, MODE] == OPEN and rate < 0.0
+            closes = self.memory.mode[k] == OPEN and rate < 0.0
             if closes:
-                self.memory[k, MODE] = CLOSED
+                self.memory.mode[k] = CLOSED
                 event = Event(self.t_internal, "close", contact.name, approach_speed=-rate)
             else:
-                self.memory[k, MODE] = OPEN
+                self.memory.mode[k] = OPEN
                 event = Event(self.t_internal, "open", contact.name, separation_speed=rate)
             self.add_event(event)
         self.use_modes()

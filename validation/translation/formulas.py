@@ -10,13 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.laws import CarvalhoMartins, ForceLaw, Hertz, HuntCrossley, KelvinVoigt, KuwabaraKono, Tsuji
-from ...core.laws.friction import (
-    AmbrosioFriction,
-    BrownMcPheeFriction,
-    StepFriction,
-    TanhFriction,
-    ThrelfallFriction,
-)
+from ...core.laws.friction import AmbrosioFriction, BrownMcPheeFriction, StepFriction, TanhFriction, ThrelfallFriction
 from ...core.laws.hunt_crossley import HuntCrossleyFamily
 
 NormalForce = Callable[[float, float, float], float]

@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.description import Model
 from ...core.laws import ForceLaw
+from ...core.multibody_model import Model
 from ...core.simulation import start
 from ...core.simulation.simulation import Simulation
-from ...core.state.modes import ACTIVE, APPROACH_SPEED, LAID_MASS, MODE
+from ...core.state.modes import ACTIVE
 from .formulas import StickingCoulomb
 
 
@@ -36,11 +36,11 @@ def laid_contacts(model: Model) -> Mapping[str, Laid]:
         sim = Simulation(model.model_copy(update={"contacts": [_known(contact) for contact in model.contacts]}))
     finally:
         log.setLevel(level)
-    rows = zip(sim.assembly.contacts, sim.workspace.arrays["memory"], strict=False)
+    rows = zip(sim.assembly.contacts, sim.memory, strict=False)
     return {
-        contact.name: Laid(float(row[APPROACH_SPEED]), float(row[LAID_MASS]))
+        contact.name: Laid(float(row.approach_speed), float(row.laid_mass))
         for contact, row in rows
-        if row[MODE] == ACTIVE and row[LAID_MASS] > 0.0
+        if row.mode == ACTIVE and row.laid_mass > 0.0
     }
 
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.assembly.evaluate import evaluate_residuals, evaluate_tangent
-from ...core.description import Model
 from ...core.elements import Joint3D, Spherical3D
 from ...core.elements.dot1_3d import Dot1
 from ...core.elements.dot2_3d import Dot2
@@ -20,6 +19,7 @@ from ...core.elements.point3d import Point
 from ...core.elements.primitive3d import AXIS
 from ...core.elements.spatial_body import start_of_marker
 from ...core.errors import TlismniError
+from ...core.multibody_model import Model
 from ...core.simulation.simulation import Simulation
 from ..errors import NotTranslatable
 from .registry import Build, can_free

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...core.contacts.contact2d import Disk2D, HalfPlane2D
 from ...core.contacts.coordinate_contact import CoordinateContact
-from ...core.description import Model
 from ...core.model.markers import GROUND, Marker2D
+from ...core.multibody_model import Model
 from ..errors import NotTranslatable
 from ..exudyn_import import Exudyn
 from .laid_contacts import Laid

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from scipy.interpolate import CubicSpline
 
-from ...core.description import Model
 from ...core.model.signals import Constant, InputSignal, Polynomial, Ramp, Signal, Sine, Step, Table
+from ...core.multibody_model import Model
 from ..errors import NotTranslatable
 
 

@@ -3,14 +3,7 @@
 import numpy as np
 
 from ...core.assembly.numbering import ModelNumbering
-from ...core.elements import (
-    AxialSpring3D,
-    Cylindrical3D,
-    Prismatic3D,
-    Revolute3D,
-    SpringDamper3D,
-    TorsionSpring3D,
-)
+from ...core.elements import AxialSpring3D, Cylindrical3D, Prismatic3D, Revolute3D, SpringDamper3D, TorsionSpring3D
 from ...core.model.markers import GROUND, Marker3D
 from ..errors import NotTranslatable
 from .registry import Build, translates

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from ...core.description import Model
 from ...core.elements import MovingFrame2D, SpatialFrame
 from ...core.model.base import in_space
+from ...core.multibody_model import Model
 from . import symbols
 from .bodies import draw_bodies
 from .interactions import draw_interaction

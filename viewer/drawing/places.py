@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator
 
 from ...core.contacts.contact3d import Contact3D, Sphere3D
-from ...core.description import Model
 from ...core.elements import BodyElement, FlexibleBody, Gear2D, PlanarFrame, PointMass2D, SpatialFrame
 from ...core.elements.spatial_body import start_of_marker
 from ...core.model.markers import Marker, Marker2D, Marker3D
+from ...core.multibody_model import Model
 from .shapes import Point, bounds, turned
 from .view import View, star
 

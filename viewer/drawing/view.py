@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.description import Model
 from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.base import in_space
 from ...core.model.markers import Marker3D
+from ...core.multibody_model import Model
 from .shapes import Point
 
 Floats = NDArray[np.float64]

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...core.description import Model
 from ...core.elements import BodyElement, Cable3D, LinearSystem, MaterialPoint3D, PlanarFrame, SpatialFrame
 from ...core.elements.cable_shape import weights
 from ...core.model.base import in_space
 from ...core.model.markers import GROUND, Marker3D
 from ...core.model.outputs import MarkerOutput3D
+from ...core.multibody_model import Model
 from ..drawing.shapes import PORT
 from ..fields import loads
 from ..motion import Motion

@@ -14,10 +14,10 @@ from ...core.contacts.mesh3d import TriangleMesh3D
 from ...core.contacts.on_mesh3d import SphereOnMesh3D
 from ...core.contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from ...core.contacts.support3d import SmoothShape3D
-from ...core.description import Model
 from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.attitude import parameters_of_matrix
 from ...core.model.markers import Marker3D
+from ...core.multibody_model import Model
 from ..scene import Floats, Solid
 from . import meshes
 from .rounds import smooth_mesh

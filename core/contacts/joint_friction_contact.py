@@ -28,7 +28,7 @@ from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction
 from ..model.base import Name, NonNegative
 from ..model.markers import Marker2D, Marker3D
-from ..state.modes import CLOSED, MEMORY_SIZE, MODE
+from ..state.modes import CLOSED, memories_at
 from .element import ContactElement
 from .geometry_kinds import JOINT, are
 from .sliding2d import act_sliding
@@ -53,10 +53,10 @@ def press(b: Any, job: int, e: int, own_rows: int, stop: int) -> None:
     if job == RESIDUAL:
         vec(b.r, b.n_extended)[w] += par[GAIN] * (par[LOAD] + par[SHARE] * force)
     elif job == TANGENT and force > 0.0:
-        memory = mat(b.memory, b.n_memory, MEMORY_SIZE)[imat(b.extra, b.count, b.nextra)[e, 0]]
+        memory = memories_at(b.memory, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]]
         slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
         of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
-        for k in range(own_rows, b.nrow if memory[MODE] == CLOSED else own_rows):
+        for k in range(own_rows, b.nrow if memory.mode == CLOSED else own_rows):
             values[of_rows[b.ncoord * k + stop]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
 
 

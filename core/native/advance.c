@@ -2,7 +2,7 @@
 
 #include "codes.h"
 #include "image.h"
-#include "way.h"
+#include "advance.h"
 
 #include <math.h>
 
@@ -41,7 +41,7 @@ static void drop_events(tlismni_run *run) {
     WHOLES(run, counts)[EVENTS] = 0;
 }
 
-bool way_any_pending(const tlismni_run *run) {
+bool advance_any_pending(const tlismni_run *run) {
     const int64_t *pending = WHOLES(run, pending);
     for (int64_t k = 0; k < run->model->numbers.contacts; k++) {
         if (pending[k]) {
@@ -52,10 +52,10 @@ bool way_any_pending(const tlismni_run *run) {
 }
 
 bool tlismni_event_due(const tlismni_run *run) {
-    return way_any_pending(run) && tlismni_computed(run) == run->beside.now;
+    return advance_any_pending(run) && tlismni_computed(run) == run->beside.now;
 }
 
-int64_t way_used(const tlismni_run *run) {
+int64_t advance_used(const tlismni_run *run) {
     return WHOLES(run, counters)[STEPS] + WHOLES(run, counts)[HANDLED];
 }
 
@@ -145,7 +145,7 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *r
     }
 }
 
-tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
+tlismni_status advance_go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
     double repaired = NAN;
     int64_t *counts = WHOLES(run, counts);
     for (;;) {
@@ -155,7 +155,7 @@ tlismni_status way_go_on(tlismni_run *run, int64_t code, bool hold, int64_t firs
         if (status != TLISMNI_OK) {
             return status == DONE ? TLISMNI_OK : status;
         }
-        int64_t left = run->limit - (way_used(run) - first);
+        int64_t left = run->limit - (advance_used(run) - first);
         if (left <= 0) {
             return TOO_MANY_STEPS;
         }
@@ -177,7 +177,7 @@ static tlismni_status begin_anew(tlismni_run *run) {
     return TLISMNI_OK;
 }
 
-tlismni_status way_begin(tlismni_run *run, double t) {
+tlismni_status advance_begin(tlismni_run *run, double t) {
     double *times = REALS(run, times);
     if (run->beside.failed) {
         return HAS_FAILED;
@@ -204,7 +204,7 @@ tlismni_status way_begin(tlismni_run *run, double t) {
     return told ? TLISMNI_OK : INPUT_REFUSED;
 }
 
-void way_arrive(tlismni_run *run, double t) {
+void advance_arrive(tlismni_run *run, double t) {
     double duration = t - run->beside.now, *inputs = REALS(run, inputs), *rates = REALS(run, rates);
     for (int64_t k = 0; k < run->model->numbers.inputs; k++, rates += RATES_SIZE) {
         if (rates[FIRST] != 0.0 || rates[SECOND] != 0.0) {
@@ -215,14 +215,14 @@ void way_arrive(tlismni_run *run, double t) {
     run->beside.now = t;
 }
 
-tlismni_status way_end(tlismni_run *run, tlismni_status status) {
+tlismni_status advance_end(tlismni_run *run, tlismni_status status) {
     if (status != TLISMNI_OK && status != INPUT_REFUSED) {
         run->beside.failed = 1;
     }
     return status;
 }
 
-tlismni_status way_read(tlismni_run *run, double t) {
+tlismni_status advance_read(tlismni_run *run, double t) {
     REALS(run, times)[TO] = t;
     return call(run, READ, run->model->places.exchange) == 1 ? TLISMNI_OK : NOT_READ;
 }
@@ -246,30 +246,30 @@ void tlismni_want_none(tlismni_run *run) {
 }
 
 tlismni_status tlismni_step(tlismni_run *run, double t, bool read) {
-    tlismni_status status = way_begin(run, t);
+    tlismni_status status = advance_begin(run, t);
     if (status != TLISMNI_OK) {
         return status;
     }
-    int64_t first = way_used(run);
+    int64_t first = advance_used(run);
     *WHOLES(run, reads) = read;
     *WHOLES(run, budget) = run->limit < run->model->numbers.chunk ? run->limit : run->model->numbers.chunk;
     int64_t code = call(run, EXCHANGE, run->model->places.exchange);
-    status = way_go_on(run, code, false, first, 0);
+    status = advance_go_on(run, code, false, first, 0);
     if (status == TLISMNI_OK) {
-        way_arrive(run, t);
+        advance_arrive(run, t);
         if (read && code != WAS_READ) {
-            status = way_read(run, t);
+            status = advance_read(run, t);
         }
     }
-    return way_end(run, status);
+    return advance_end(run, status);
 }
 
 tlismni_status tlismni_look(tlismni_run *run) {
-    tlismni_status status = way_begin(run, run->beside.now);
-    return status == TLISMNI_OK ? way_end(run, way_read(run, run->beside.now)) : status;
+    tlismni_status status = advance_begin(run, run->beside.now);
+    return status == TLISMNI_OK ? advance_end(run, advance_read(run, run->beside.now)) : status;
 }
 
-tlismni_status way_settle(tlismni_run *run) {
+tlismni_status advance_settle(tlismni_run *run) {
     int64_t first = WHOLES(run, counts)[EVENTS];
     if (run->model->numbers.redundant) {
         return NEEDS_ROWS;

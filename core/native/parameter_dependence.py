@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..description import Model
 from ..errors import TlismniError
+from ..multibody_model import Model
 from .errors import NativeError
 from .forms import Form, form_of, is_sure, near_form, nodes_of, series_form
 from .parameters import ABOUT, Parameter, Setting, Tried, Word

@@ -6,9 +6,9 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import ANGLE, POINT_A, POINT_B
 from .cable_foot3d import CABLE, LENGTH, VECTORS
-from .crossing3d import BACK, STEEPEST
 from .moving_point3d import POINT_OF_CABLE, on_plane
 from .normal3d import EXTENT_A, EXTENT_B, KIND, PAIR, RADIUS_A, RADIUS_B, TILT
+from .parallel_axes3d import BACK, STEEPEST
 
 TURN = 2.0 * 1.01
 """|d(A u)| <= 2 |u| |dp| for |p| = 1; the dense output between two rows leaves that by less than the rest."""

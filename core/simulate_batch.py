@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .batch import in_threads, run_into
+from .batch_result import Runs
 from .compiled_model import CompiledModel, compile_model
 from .errors import ModelError
-from .one_run import check_end, check_times
-from .runs import Runs
+from .simulate_one import check_end, check_times
+from .worker_threads import in_threads, run_into
 
 Columns = Mapping[str, ArrayLike]
 

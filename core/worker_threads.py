@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from .batch_result import Runs
 from .errors import ModelError, SimulationError
-from .runs import Runs
 
 if TYPE_CHECKING:
     from .simulation.simulation import Simulation

@@ -34,11 +34,23 @@ from .structure_switch import HELD, KINDS
 
 @internal
 def list_sharing(
-    ws: Any, b: Any, m_act: int, n_implied: int, active: Any, matrix_col: Any, start: Any, sharing: Any, write: bool
+    workspace: Any,
+    b: Any,
+    m_act: int,
+    n_implied: int,
+    active: Any,
+    matrix_col: Any,
+    start: Any,
+    sharing: Any,
+    write: bool,
 ) -> int:
     """Which multipliers share the load with each of the implied rows, by their places among those of the matrix, where
     each row of compatibility begins, and how many numbers these rows have; `write`: to `start` and `sharing`."""
-    codes, compliance, mechanism = ivec(ws.wanted, b.n_contacts), vec(b.compliance, b.m_ext), ivec(b.mechanism, b.m_ext)
+    codes, compliance, mechanism = (
+        ivec(workspace.wanted, b.n_contacts),
+        vec(b.compliance, b.m_ext),
+        ivec(b.mechanism, b.m_ext),
+    )
     rows, slides = ivec(b.contact_rows, b.n_contacts), ivec(b.contact_slide_rows, b.n_contacts)
     count = 0
     for p in range(n_implied):
@@ -63,108 +75,134 @@ def list_sharing(
 
 
 @internal
-def begin_sharing(ws: Any, st: Any) -> None:
+def begin_sharing(workspace: Any, structure: Any) -> None:
     """Rows of compatibility of a structure that has just been built: each implied row carries nothing. Null vectors of
     different mechanisms have nothing in common, so one solution finds one of each of them."""
     b, start, sharing = (
-        building_at(ws.building),
-        ivec(st.sharing_start, st.n_implied + 1),
-        ivec(st.sharing, st.n_sharing),
+        building_at(workspace.building),
+        ivec(structure.sharing_start, structure.n_implied + 1),
+        ivec(structure.sharing, structure.n_sharing),
     )
-    rows, color = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
-    active, mechanism = ivec(st.active, st.m_act + st.n_implied), ivec(b.mechanism, b.m_ext)
+    rows, color = vec(structure.compatibility, structure.n_sharing), ivec(structure.sharing_color, structure.n_implied)
+    active, mechanism = ivec(structure.active, structure.m_act + structure.n_implied), ivec(b.mechanism, b.m_ext)
     colors = 0
-    for p in range(st.n_implied):
+    for p in range(structure.n_implied):
         for e in range(start[p], start[p + 1]):
-            rows[e] = 1.0 if sharing[e] == st.m_act + p else 0.0
-        own, color[p] = active[st.m_act + p], colors
+            rows[e] = 1.0 if sharing[e] == structure.m_act + p else 0.0
+        own, color[p] = active[structure.m_act + p], colors
         if own < b.m_joints:
             color[p] = 0
             for other in range(p):
-                color[p] += 1 if mechanism[active[st.m_act + other]] == mechanism[own] else 0
+                color[p] += 1 if mechanism[active[structure.m_act + other]] == mechanism[own] else 0
         colors = max(colors, color[p] + 1)
 
 
 @internal
-def _first_shared(ws: Any, joints: bool) -> int:
+def _first_shared(workspace: Any, joints: bool) -> int:
     """From which of the implied rows on the load is shared: `joints`, if they are asked for, stand before contacts."""
-    first, active, b = 0, ivec(ws.active, ws.m_act + ws.n_implied), building_at(ws.building)
+    first, active, b = 0, ivec(workspace.active, workspace.m_act + workspace.n_implied), building_at(workspace.building)
     if not joints and b.loads_felt == 0:
-        while first < ws.n_implied and active[ws.m_act + first] < b.m_joints:
+        while first < workspace.n_implied and active[workspace.m_act + first] < b.m_joints:
             first += 1
     return first
 
 
 @internal
-def write_compatibility(ws: Any, joints: bool) -> None:
+def write_compatibility(workspace: Any, joints: bool) -> None:
     """The rows of compatibility, to their slots in the matrix. Those of joints only if it is asked what these carry, or
     forces depend on it; else the implied ones carry nothing."""
-    if ws.n_implied == 0:
+    if workspace.n_implied == 0:
         return
-    st, first = structure_at(ws.structure), _first_shared(ws, joints)
-    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows, slots = vec(st.compatibility, st.n_sharing), ivec(st.sharing_slot, st.n_sharing)
-    values = vec(ws.values, ws.n_values)
-    for p in range(st.n_implied):
+    structure, first = structure_at(workspace.structure), _first_shared(workspace, joints)
+    start, sharing = (
+        ivec(structure.sharing_start, structure.n_implied + 1),
+        ivec(structure.sharing, structure.n_sharing),
+    )
+    rows, slots = vec(structure.compatibility, structure.n_sharing), ivec(structure.sharing_slot, structure.n_sharing)
+    values = vec(workspace.values, workspace.n_values)
+    for p in range(structure.n_implied):
         for e in range(start[p], start[p + 1]):
-            alone = 1.0 if sharing[e] == st.m_act + p else 0.0
+            alone = 1.0 if sharing[e] == structure.m_act + p else 0.0
             values[slots[e]] = rows[e] if p >= first else alone
 
 
 @internal
-def left_of_sharing(ws: Any, joints: bool) -> None:
+def left_of_sharing(workspace: Any, joints: bool) -> None:
     """What the multipliers leave of the rows of compatibility as `write_compatibility` has written them, its negative,
     to their places in `rhs`."""
-    if ws.n_implied == 0:
+    if workspace.n_implied == 0:
         return
-    st, lam, first = structure_at(ws.structure), vec(ws.lam, ws.m_ext), _first_shared(ws, joints)
-    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows = vec(st.compatibility, st.n_sharing)
-    rhs, active = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ivec(ws.active, ws.m_act + ws.n_implied)
-    for p in range(ws.n_implied):
+    structure, lam, first = (
+        structure_at(workspace.structure),
+        vec(workspace.lam, workspace.m_ext),
+        _first_shared(workspace, joints),
+    )
+    start, sharing = (
+        ivec(structure.sharing_start, structure.n_implied + 1),
+        ivec(structure.sharing, structure.n_sharing),
+    )
+    rows = vec(structure.compatibility, structure.n_sharing)
+    rhs, active = (
+        vec(workspace.rhs, workspace.n + workspace.m_act + workspace.n_implied),
+        ivec(workspace.active, workspace.m_act + workspace.n_implied),
+    )
+    for p in range(workspace.n_implied):
         total = 0.0
         for e in range(start[p], start[p + 1]):
             total += rows[e] * lam[active[sharing[e]]]
-        rhs[ws.n + ws.m_act + p] = -total if p >= first else -lam[active[ws.m_act + p]]
+        rhs[workspace.n + workspace.m_act + p] = -total if p >= first else -lam[active[workspace.m_act + p]]
 
 
 @internal
-def solve_equations(ws: Any, lu_address: int) -> None:
+def solve_equations(workspace: Any, lu_address: int) -> None:
     """rhs (n + m_act,) -> its solution with the matrix of the equations, where rows of compatibility leave nothing."""
-    rhs = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied)
-    for p in range(ws.n_implied):
-        rhs[ws.n + ws.m_act + p] = 0.0
-    solve(lu_at(lu_address), ws.rhs)
+    rhs = vec(workspace.rhs, workspace.n + workspace.m_act + workspace.n_implied)
+    for p in range(workspace.n_implied):
+        rhs[workspace.n + workspace.m_act + p] = 0.0
+    solve(lu_at(lu_address), workspace.rhs)
 
 
 @internal
-def _load_gradients(ws: Any, st: Any, color: int, first: int) -> None:
+def _load_gradients(workspace: Any, structure: Any, color: int, first: int) -> None:
     """Sum of the gradients of implied rows of this color, from `first` on, to `rhs`."""
-    rhs, count = vec(ws.rhs, ws.n + ws.m_act + ws.n_implied), ws.n_values
-    columns, slots, values = ivec(ws.gradient_col, count), ivec(ws.gradient_slot, count), vec(ws.values, count)
-    starts, active = ivec(ws.gradient_start, ws.m_ext), ivec(ws.active, ws.m_act + ws.n_implied)
-    colors = ivec(st.sharing_color, st.n_implied)
+    rhs, count = vec(workspace.rhs, workspace.n + workspace.m_act + workspace.n_implied), workspace.n_values
+    columns, slots, values = (
+        ivec(workspace.gradient_col, count),
+        ivec(workspace.gradient_slot, count),
+        vec(workspace.values, count),
+    )
+    starts, active = (
+        ivec(workspace.gradient_start, workspace.m_ext),
+        ivec(workspace.active, workspace.m_act + workspace.n_implied),
+    )
+    colors = ivec(structure.sharing_color, structure.n_implied)
     rhs[:] = 0.0
-    for p in range(first, ws.n_implied):
+    for p in range(first, workspace.n_implied):
         if colors[p] == color:
-            row = active[ws.m_act + p]
+            row = active[workspace.m_act + p]
             for e in range(starts[row], starts[row + 1]):
                 rhs[columns[e]] += values[slots[e]]
 
 
 @internal
-def _still_null(ws: Any, st: Any, p: int) -> bool:
+def _still_null(workspace: Any, structure: Any, p: int) -> bool:
     """True if row p of compatibility, that of the contact whose gradient is in `rhs`, still is a null vector of the
     gradients evaluated last, as finely as it was found; else `rhs` becomes what it leaves of them. Where joints take
     part in it, whose multipliers are none of its entries, it is not known to be one."""
-    n, m_act, size = ws.n, ws.m_act, 0.0
-    rhs, scale, values = vec(ws.rhs, n), vec(ws.scale, n), vec(ws.values, ws.n_values)
-    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows, own = vec(st.compatibility, st.n_sharing), st.n_jacobian
-    compliance, active = vec(building_at(ws.building).compliance, ws.m_ext), ivec(ws.active, m_act + ws.n_implied)
+    n, m_act, size = workspace.n, workspace.m_act, 0.0
+    rhs, scale, values = vec(workspace.rhs, n), vec(workspace.scale, n), vec(workspace.values, workspace.n_values)
+    start, sharing = (
+        ivec(structure.sharing_start, structure.n_implied + 1),
+        ivec(structure.sharing, structure.n_sharing),
+    )
+    rows, own = vec(structure.compatibility, structure.n_sharing), structure.n_jacobian
+    compliance, active = (
+        vec(building_at(workspace.building).compliance, workspace.m_ext),
+        ivec(workspace.active, m_act + workspace.n_implied),
+    )
     own_compliance = compliance[active[m_act + p]]
-    own_start, own_col = ivec(st.jacobian_start, m_act + 1), ivec(st.jacobian_col, own)
-    own_slot = ivec(st.jacobian_slot, own)
+    own_start, own_col = ivec(structure.jacobian_start, m_act + 1), ivec(structure.jacobian_col, own)
+    own_slot = ivec(structure.jacobian_slot, own)
     for i in range(n):
         size = max(size, scale[i] * abs(rhs[i]))
     for j in range(start[p], start[p + 1]):
@@ -179,29 +217,35 @@ def _still_null(ws: Any, st: Any, p: int) -> bool:
 
 
 @internal
-def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
+def _renewed(workspace: Any, lu_address: int, joints: bool) -> bool:
     """Rows of compatibility for the gradients evaluated last, from the factors of the equations with those that were
     valid before; False if these are still valid."""
-    st, b = structure_at(ws.structure), building_at(ws.building)
-    n, m_act, changed = ws.n, ws.m_act, False
-    start, sharing = ivec(st.sharing_start, st.n_implied + 1), ivec(st.sharing, st.n_sharing)
-    rows, colors = vec(st.compatibility, st.n_sharing), ivec(st.sharing_color, st.n_implied)
+    structure, b = structure_at(workspace.structure), building_at(workspace.building)
+    n, m_act, changed = workspace.n, workspace.m_act, False
+    start, sharing = (
+        ivec(structure.sharing_start, structure.n_implied + 1),
+        ivec(structure.sharing, structure.n_sharing),
+    )
+    rows, colors = vec(structure.compatibility, structure.n_sharing), ivec(structure.sharing_color, structure.n_implied)
     compliance, units = vec(b.compliance, b.m_ext), vec(b.units, n + b.m_ext)
-    rhs, active = vec(ws.rhs, n + m_act + ws.n_implied), ivec(ws.active, m_act + ws.n_implied)
-    first = _first_shared(ws, joints)
-    color = colors[first] if first < ws.n_implied else 0
-    while first < ws.n_implied:
-        _load_gradients(ws, st, color, first)
+    rhs, active = (
+        vec(workspace.rhs, n + m_act + workspace.n_implied),
+        ivec(workspace.active, m_act + workspace.n_implied),
+    )
+    first = _first_shared(workspace, joints)
+    color = colors[first] if first < workspace.n_implied else 0
+    while first < workspace.n_implied:
+        _load_gradients(workspace, structure, color, first)
         left, contact = False, -1
-        for p in range(first, ws.n_implied):
+        for p in range(first, workspace.n_implied):
             left = left or colors[p] > color
             if colors[p] == color and active[m_act + p] >= b.m_joints:
                 contact = p
         # (most rows of contacts are of bodies that do not move against each other)
-        still = contact >= 0 and _still_null(ws, st, contact)
+        still = contact >= 0 and _still_null(workspace, structure, contact)
         if not still:
-            solve_transposed(lu_at(lu_address), ws.rhs)
-        for p in range(first, ws.n_implied):
+            solve_transposed(lu_at(lu_address), workspace.rhs)
+        for p in range(first, workspace.n_implied):
             row = active[m_act + p]
             own, unit = compliance[row] if compliance[row] > 0.0 else 1.0, units[n + row]
             for e in range(start[p], start[p + 1] if colors[p] == color and not still else start[p]):
@@ -221,45 +265,45 @@ def _renewed(ws: Any, lu_address: int, joints: bool) -> bool:
 
 
 @internal
-def factor_equations(ws: Any, lu_address: int) -> int:
+def factor_equations(workspace: Any, lu_address: int) -> int:
     """Factor the matrix of the equations evaluated last, with rows of compatibility of its gradients: as `factor`."""
-    status = factor(lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or not _renewed(ws, lu_address, False):
+    status = factor(lu_at(lu_address), workspace.values)
+    if status != 0 or workspace.n_implied == 0 or not _renewed(workspace, lu_address, False):
         return int(status)
-    write_compatibility(ws, False)
-    return int(factor(lu_at(lu_address), ws.values))
+    write_compatibility(workspace, False)
+    return int(factor(lu_at(lu_address), workspace.values))
 
 
 @internal
-def analyze_equations(ws: Any, lu_address: int) -> int:
+def analyze_equations(workspace: Any, lu_address: int) -> int:
     """Pivots for the matrix of the equations evaluated last, with rows of compatibility of its gradients: as
     `linalg.analyze`."""
-    status = call_analyze(ws.analyze, lu_at(lu_address), ws.values)
-    if status != 0 or ws.n_implied == 0 or factor(lu_at(lu_address), ws.values) != 0:
+    status = call_analyze(workspace.analyze, lu_at(lu_address), workspace.values)
+    if status != 0 or workspace.n_implied == 0 or factor(lu_at(lu_address), workspace.values) != 0:
         return int(status)
-    if not _renewed(ws, lu_address, False):
+    if not _renewed(workspace, lu_address, False):
         return OK
-    write_compatibility(ws, False)
-    return int(call_analyze(ws.analyze, lu_at(lu_address), ws.values))
+    write_compatibility(workspace, False)
+    return int(call_analyze(workspace.analyze, lu_at(lu_address), workspace.values))
 
 
 @internal
-def factor_shared(ws: Any, lu_address: int) -> int:
+def factor_shared(workspace: Any, lu_address: int) -> int:
     """The same as `factor_equations` where it is asked what joints carry."""
-    status = factor(lu_at(lu_address), ws.values)
+    status = factor(lu_at(lu_address), workspace.values)
     if status != 0:
         return int(status)
-    _renewed(ws, lu_address, True)
-    write_compatibility(ws, True)
-    return int(factor(lu_at(lu_address), ws.values))
+    _renewed(workspace, lu_address, True)
+    write_compatibility(workspace, True)
+    return int(factor(lu_at(lu_address), workspace.values))
 
 
 @internal
-def keep_sharing(ws: Any, back: bool) -> None:
+def keep_sharing(workspace: Any, back: bool) -> None:
     """Keep the rows of compatibility while a point is asked for, or put them `back`: to ask changes nothing."""
-    st = structure_at(ws.structure)
-    rows, kept = vec(st.compatibility, st.n_sharing), vec(st.sharing_kept, st.n_sharing)
-    for e in range(st.n_sharing):
+    structure = structure_at(workspace.structure)
+    rows, kept = vec(structure.compatibility, structure.n_sharing), vec(structure.sharing_kept, structure.n_sharing)
+    for e in range(structure.n_sharing):
         if back:
             rows[e] = kept[e]
         else:
@@ -267,7 +311,7 @@ def keep_sharing(ws: Any, back: bool) -> None:
 
 
 @compiled
-def share_load(ws: Any) -> bool:
+def share_load(workspace: Any) -> bool:
     """Pivots for the stages' matrix as it was evaluated last, which has some, with rows of compatibility of its
     gradients; False where there is no memory for them, or there are none."""
-    return bool(analyze_equations(ws, ws.kkt) == 0)
+    return bool(analyze_equations(workspace, workspace.kkt) == 0)

@@ -8,29 +8,8 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import ENERGY_GAIN
-from .laws import POISSON
-from .records import (
-    COUNT,
-    IN_ROUNDS,
-    LOW,
-    PART,
-    RATE,
-    RATE_BEFORE,
-    RESIDUAL,
-    RESTITUTION,
-    ROUNDING,
-    SETTLED,
-    SLIDE_BEFORE,
-    SLIDE_RATE,
-    SPIN,
-    SPIN_BEFORE,
-    SWAY_BEFORE,
-    SWAY_RATE,
-    col,
-    copy,
-    real,
-    whole,
-)
+from .impact_law_codes import POISSON
+from .records import SETTLED, scalars, touching
 
 MOST_BLOWS = 100_000
 """Of a sequential impact, before it is given up."""
@@ -39,37 +18,43 @@ MOST_BOUNCES, MOST_ROUNDS = 50, 2000
 fast can feed bounces that go to and fro between the others and do not become lower."""
 FIRST, OF_ALL = range(2)
 """Attempts at the first round of an impact."""
-_OF_MOTION = ((RATE, RATE_BEFORE), (SLIDE_RATE, SLIDE_BEFORE), (SWAY_RATE, SWAY_BEFORE), (SPIN, SPIN_BEFORE))
 
 
 @internal
-def strikes_anew(ev: Any, dr: Any, ws: Any, status: int, attempt: int, lost: float) -> bool:
+def strikes_anew(instant: Any, drive: Any, workspace: Any, status: int, attempt: int, lost: float) -> bool:
     """True if the first round of an impact is undone, for the next attempt at it: FIRST, where a contact that separated
     beforehand approaches now; OF_ALL, where impulses of all contacts are not found or raise the energy (`lost` < 0, J).
     The third, with the impulses of FIRST, is the first of some rounds, and so is FIRST where Poisson's law takes part,
     which speaks of the impulses of each round."""
-    count, part, rate, rounding = whole(ev)[COUNT], col(ev, PART), col(ev, RATE), col(ev, ROUNDING)
-    poisson, anew = 0, attempt == OF_ALL and (status != SETTLED or lost < -ENERGY_GAIN * vec(ws.energy, 3)[0])
-    whole(ev)[IN_ROUNDS] = 1 if attempt > OF_ALL or anew else 0
+    contact = touching(instant)
+    count, part, rate, rounding = (
+        scalars(instant).count,
+        vec(instant.part, instant.most),
+        contact.gap_rate,
+        contact.rate_rounding,
+    )
+    poisson, anew = 0, attempt == OF_ALL and (status != SETTLED or lost < -ENERGY_GAIN * vec(workspace.energy, 3)[0])
+    scalars(instant).in_rounds = 1 if attempt > OF_ALL or anew else 0
     if attempt == FIRST and status == SETTLED:
         for i in range(count):
             anew = anew or (part[i] == 0.0 and rate[i] < -rounding[i])
         for i in range(count):
-            poisson += ivec(dr.law, ws.n_contacts)[ivec(ev.contacts, ev.most)[i]] == POISSON
+            poisson += ivec(drive.law, workspace.n_contacts)[ivec(instant.contacts, instant.most)[i]] == POISSON
         if anew and poisson > 0:
-            whole(ev)[IN_ROUNDS] = 1 if poisson < count else 0
+            scalars(instant).in_rounds = 1 if poisson < count else 0
             anew = False
     if not anew:
         return False
-    for i in range(ws.n):
-        vec(ws.v, ws.n_ext)[i] = vec(ev.velocities, ws.n_ext)[i]
-    for now, before in _OF_MOTION:
-        copy(col(ev, now), col(ev, before), count)
-    real(ev)[RESIDUAL] = 0.0
+    for i in range(workspace.n):
+        vec(workspace.v, workspace.n_ext)[i] = vec(instant.velocities, workspace.n_ext)[i]
+    for i in range(count):
+        contact[i].gap_rate, contact[i].sliding_rate = contact[i].gap_rate_before, contact[i].sliding_rate_before
+        contact[i].sliding_rate2, contact[i].spin_rate = contact[i].sliding_rate2_before, contact[i].spin_rate_before
+    scalars(instant).constraint_residual = 0.0
     return True
 
 
 @internal
-def restitution(ev: Any, low: bool, i: int) -> float:
-    """Of touching contact i; `low`: those that are `LOW` are struck without it."""
-    return 0.0 if low and col(ev, LOW)[i] != 0.0 else col(ev, RESTITUTION)[i]
+def restitution(instant: Any, low: bool, i: int) -> float:
+    """Of touching contact i; `low`: those with a negligible bounce are struck without it."""
+    return 0.0 if low and touching(instant)[i].negligible_bounce != 0.0 else touching(instant)[i].restitution
