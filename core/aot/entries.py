@@ -19,13 +19,13 @@ from .. import compiled as _compiled
 from ..analysis import linearise, tangent_steps, variational_equation
 from ..assembly import (
     building,
-    compatibility,
     condition_probe,
     evaluate,
     levels,
     matrix_state,
     partition_building,
     projection,
+    redundant_reactions,
 )
 from ..compiled import types
 from ..compiled.kernels import KERNEL_SIGNATURE
@@ -162,7 +162,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield projection.meet, (_WS, _FLAG)
     yield partition_building.partition_wanted, (_WS,)
     yield condition_probe.set_probe, (_WS,)
-    yield compatibility.share_load, (_WS,)
+    yield redundant_reactions.share_load, (_WS,)
     yield matrix_state.matrix_words, (_WS,)
     yield matrix_state.save_matrices, matrix_state.SAVE_ARGUMENTS
     yield matrix_state.restore_matrices, matrix_state.RESTORE_ARGUMENTS
