@@ -202,10 +202,14 @@ def _forget_in_memories(drive: Any, workspace: Any, loop: Any, shift: int) -> No
             memory.largest_approach = 0.0
             if memory.mode == OPEN:
                 memory.approach_speed = memory.begun_impulse = memory.begun_loss = memory.laid_mass = 0.0
-        elif law[k] != MASSLESS:
+            continue
+        memory.laid_mass = 0.0
+        if not in_space(workspace, k):
+            memory.tangent_angle = memory.tangent_axis = memory.slow_sliding = memory.sliding_lean = 0.0
+        if law[k] != MASSLESS:
             memory.approach_speed = 0.0
             leans = abs(memory.slide_mode) == 1.0 or ivec(workspace.contact_companion, workspace.n_contacts)[k] != 0
-            if not in_space(workspace, k) or memory.mode != CLOSED or not leans:
+            if memory.mode != CLOSED or not leans:
                 memory.sliding_lean = 0.0
             if in_space(workspace, k) or memory.mode != CLOSED or memory.slide_mode != STICKS:
                 memory.slide_start = 0.0
