@@ -134,7 +134,8 @@ FORCES = {
     ),
 }  # fmt: skip
 OF_ATTITUDES = (
-    "torsion spring", "bushing", "coupled bushing", "friction about an axis", "rate servo", "angle table", "angle load",
+    "torsion spring", "bushing", "coupled bushing", "friction about an axis", "friction of a ball", "rate servo",
+    "angle table", "angle load",
     "angle servo, largest None", "controller of angle by slide",
 )  # fmt: skip
 GEAR = Gear3D(name="j", frame_a=GROUND, wheel_a=LEFT, frame_b=LEFT, wheel_b=RIGHT, radius_a=0.7, radius_b=-0.4)
