@@ -461,7 +461,7 @@ __getattr__, __dir__ = late_names(
         ".contact_solvers.solve_friction": "FrictionSolution solve_friction",
         ".contacts.angle_stop2d": "AngleStop2D",
         ".contacts.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
-        ".contacts.box2d": "Box2D DiskOnBox2D",
+        ".contacts.disk_on_box2d": "Box2D DiskOnBox2D",
         ".contacts.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
         ".contacts.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
         ".contacts.coordinate_contact": "CoordinateContact CoordinateTerm",

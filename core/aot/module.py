@@ -152,11 +152,14 @@ def _mangled(module: str) -> str:
 _SELDOM = tuple(
     _mangled(module)
     for module in (
-        "analysis", "assembly.building", "assembly.entries", "assembly.matrix_state", "assembly.partition_building",
-        "assembly.structure_tables", "contact_solvers", "contacts.bristle2d", "contacts.bristle3d",
-        "contacts.scalar_contact2d", "contacts.spherical_friction3d", "elements.measure3d", "elements.pid_controller2d",
-        "elements.spherical_friction3d",
-        "event_detection.contact_evaluation", "event_detection.joint_loads", "event_detection.repivoting", "events",
+        "analysis", "assembly.building", "assembly.condition_probe", "assembly.entries", "assembly.matrix_state",
+        "assembly.partition_building", "assembly.projection", "assembly.structure_tables", "contact_solvers",
+        "contacts.bristle2d", "contacts.bristle3d", "contacts.patch3d", "contacts.scalar_contact2d",
+        "contacts.spherical_friction3d", "contacts.stop3d", "contacts.turning3d", "elements.cable_clamp3d",
+        "elements.interface_load3d", "elements.joint_coordinates3d", "elements.measure3d", "elements.measured_force3d",
+        "elements.pid_controller2d", "elements.pid_controller3d", "elements.relative_spin3d", "elements.rolling3d",
+        "elements.spherical_friction3d", "event_detection.contact_evaluation", "event_detection.event_search",
+        "event_detection.joint_loads", "event_detection.repivoting", "event_detection.roots", "events",
         "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice", "methods.frames",
         "recovery", "simulation", "stage.corotating", "stage.jfnk", "stage.simple", "time_loop.time_stepping",
     )

@@ -23,7 +23,7 @@ __getattr__, __dir__ = late_names(
     {
         ".angle_stop2d": "AngleStop2D",
         ".ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
-        ".box2d": "DiskOnBox2D",
+        ".disk_on_box2d": "DiskOnBox2D",
         ".contact2d": "DiskOnDisk2D DiskOnHalfPlane2D",
         ".contact3d": "SphereOnHalfSpace3D SphereOnSphere3D",
         ".coordinate_contact": "CoordinateContact",
