@@ -212,7 +212,7 @@ def test_formulas_that_cannot_be_used_are_named():
         simulate(Model(bodies=[PointMass2D(name="p", mass=1.0)], joints=[Odd(name="j", b=on("p"))]), 0.1)
 
     for formula, text in (
-        (lambda a, b, sise: b.x, r"argument 'sise', which is none of its fields \['a', 'b', 'size', 'word'\]"),
+        (lambda a, b, sise: b.x, r"argument 'sise', which is none of its fields \[.*'a', 'b', 'size', 'word'\]"),
         (lambda a, b, word: b.x, r"Odd.word = 'x' is no number"),
         (lambda size: size, "no argument that is a Marker2D"),
         (lambda a, b, size: size, "does not depend on where its markers are"),

@@ -65,7 +65,7 @@ def test_it_is_set_before_the_run(give):
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_it_has_the_same_bits_without_python(version, tmp_path):
-    sides = Pair(sliding_block(), tmp_path, version).instances()
+    sides = Pair(sliding_block(), tmp_path, version, t_end=1.0).instances()
     for side in sides:
         side.set(give=4.0)
         side.begin()
