@@ -31,8 +31,7 @@ from tlismni.core import (
 from tlismni.core.contact_solvers.contact_blocks import pack_contacts
 from tlismni.core.contact_solvers.row_sweeps import list_columns, press_apart, sweep_rows
 from tlismni.core.events.zeno import SIZE
-from tlismni.core.state.modes import CLOSED
-from tlismni.core.state.modes import PUSHES as PUSHES_OF_A_CONTACT
+from tlismni.core.state.modes import CLOSED, STEP_FORCES
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT
 
 G, R = 9.81, 0.1
@@ -195,9 +194,9 @@ def test_a_state_within_the_steps_goes_on_alike():
     assert sim.clock[PUSH_STEP] > 0.0
     sim.advance(0.06)
     assert np.array_equal(later, sim.values())
-    for k in range(PUSHES_OF_A_CONTACT):
+    for k in range(STEP_FORCES):
         sim.restore(state)
-        sim.memory.step_force[k][0] += 1.0
+        sim.memory.step_force[0, k] += 1.0
         assert sim.state() != state
 
 
