@@ -20,7 +20,7 @@ APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
 space its sliding along both tangents."""
 KINDS = 8
-"""A code is one of these, plus KINDS times IMPLIED of the contact's memory."""
+"""A code is one of these, plus KINDS times `implied_rows` of the contact's memory."""
 CODES = KINDS * (OF_NORMAL + OF_FIRST + OF_SECOND + 1)
 
 

@@ -11,6 +11,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
 from .kept import KeptCode
+from .view_code import vector_view
 
 
 def compiled(function: Callable[..., Any]) -> Any:
@@ -98,8 +99,6 @@ def caller(signature: Any) -> Any:
 
 def records_view(record_type: Any) -> Any:
     """Intrinsic view(address, n): n records of `record_type` from an address on."""
-    from .view_code import vector_view
-
     return vector_view(record_type)
 
 

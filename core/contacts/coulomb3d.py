@@ -5,15 +5,15 @@ is zero; one that others hold at the limit of its friction has the first one's r
 constant part of its normal force along the second one. One that slides has the gap only, and F_T = -mu F_N u_T/|u_T|.
 Where |u_T| comes to zero a direction has to go on through it: steps end beyond the event before they end at it, and a
 speed that is less than what error control resolves has no direction but that of its errors. With x and y along the
-tangents, x along the direction of sliding at the last event, and the speed SLOW that is so small, s^2 = x^2 + SLOW^2,
-the angle of friction is atan(y/s): that of u_T but for (SLOW/x)^2/2. It is there where sliding begins, and draws y to
-zero from the first instant on.
+tangents, x along the direction of sliding at the last event, the speed v_0 = `slow_sliding` that is so small, and
+s^2 = x^2 + v_0^2, the angle of friction is atan(y/s): that of u_T but for (v_0/x)^2/2. It is there where sliding
+begins, and draws y to zero from the first instant on.
 
 On a patch (`patch3d.py`) z = r w_n stands beside x and y, and the torque over r beside both forces: it slides or spins
-as a whole, with a direction in space, at the angle LEAN out of the tangent plane.
+as a whole, with a direction in space, at the angle `sliding_lean` out of the tangent plane.
 
-What the rows of a contact that does not stick tell: of an open one x and y; of one that slides p - TURNED (|(p-hat, y,
-q)| - SLOW), whose zero is the end of sliding, or a turn of its direction by much, and |u_T|. The third block of the
+Rows of a contact that does not stick: of an open one x and y; of a sliding one p - TURNED (|(p-hat, y,
+q)| - v_0), whose zero is the end of sliding, or a turn of its direction by much, and |u_T|. The third block of the
 monitor says z of an open contact, of a closed one z/sqrt(z^2 + c^2).
 """
 

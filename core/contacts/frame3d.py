@@ -1,8 +1,8 @@
 """Tangents of a contact in space: two directions across its normal, smooth while the contact lasts.
 
 Angles are counted from an axis of the first shape's marker, less its part along the normal: of a half-space its x axis,
-of spheres the one that was farthest from the normal when the contact closed. The first tangent is at the angle WAY,
-that of sliding or of a friction force where there is one; the second is across both.
+of spheres the one that was farthest from the normal when the contact closed. The first tangent is at
+`tangent_angle`, that of sliding or of a friction force where there is one; the second is across both.
 """
 
 import math

@@ -199,11 +199,9 @@ class JointFriction2D(JointFriction):
         return columns, (*numbering.frame(self.a), *numbering.frame(self.b))
 
 
-class JointFriction3D(JointFriction):
-    """Friction of a joint between the bodies of markers in space, about or along the z axis of marker `a`."""
+class SpatialJointFriction(JointFriction):
+    """Base of friction of a joint between the bodies of markers in space."""
 
-    type: Literal["JointFriction3D"] = "JointFriction3D"
-    kernel: ClassVar[Any] = joint_friction3d_kernel
     width: ClassVar[int] = SPATIAL
 
     a: Marker3D
@@ -216,6 +214,13 @@ class JointFriction3D(JointFriction):
 
     def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
         return columns_of(self.a, self.b, numbering), coordinates_of(self.a, self.b, numbering)
+
+
+class JointFriction3D(SpatialJointFriction):
+    """Friction of a joint about or along the z axis of marker `a`."""
+
+    type: Literal["JointFriction3D"] = "JointFriction3D"
+    kernel: ClassVar[Any] = joint_friction3d_kernel
 
 
 def contact_of(friction: JointFrictionForce) -> JointFriction:

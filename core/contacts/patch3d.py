@@ -2,14 +2,14 @@
 
 With r the friction radius (`laws/friction/turning.py`), z = r w_n stands beside the sliding velocity x and y along both
 tangents, and the torque over r beside both forces. What slides or spins has a direction in space, d at the last event,
-at the angle LEAN out of the tangent plane:
+at the angle `sliding_lean` out of the tangent plane:
 
-    F_T = -mu F_N (g_1, g_2)   M_n = -mu F_N r g_3   g = (p-hat d + y t_2 + q e)/|...|,   p-hat^2 = p^2 + SLOW^2
+    F_T = -mu F_N (g_1, g_2)   M_n = -mu F_N r g_3   g = (p-hat d + y t_2 + q e)/|...|,   p-hat^2 = p^2 + v_0^2
 
-where p is the part of (x, y, z) along d, and q that along e, across d and t_2. With r = 0 that is friction of a point
-(`coulomb3d.py`). What sticks has the rows of both tangents, and the torque mu F_N r z/sqrt(z^2 + c^2), c = 2 SLOW: it
-creeps where nobody sees it, and what it holds is within the ellipsoid with this torque (`assembly/sticking_force.py`).
-"""
+with v_0 as in `coulomb3d.py`, where p is the part of (x, y, z) along d, and q that along e, across d and t_2. With
+r = 0 that is friction of a point (`coulomb3d.py`). What sticks has the rows of both tangents, and the torque mu F_N r
+z/sqrt(z^2 + c^2), c = 2 v_0: it creeps where nobody sees it, and what it holds is within the ellipsoid with this
+torque (`assembly/sticking_force.py`)."""
 
 import math
 from typing import Any

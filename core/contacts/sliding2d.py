@@ -2,7 +2,7 @@
 
 A closed contact that sticks has both as constraints. One that slides has the gap only, and its multiplier acts along
 grad g - mu s grad d, with s = +-1 the direction of sliding and d the sliding distance: F_T = -mu F_N s (in general
-F_T = RATIO F_N). A contact that acts as a force gets F_T from a regularised law. On a surface that moves
+F_T = `friction_ratio` F_N). A contact that acts as a force gets F_T from a regularised law. On a surface that moves
 (`moving_surface.py`) the sliding velocity is d' - f, and sticking is a constraint of velocities.
 """
 

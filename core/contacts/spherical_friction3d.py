@@ -6,7 +6,8 @@ most, so there are two, with the same load: the first one has two of the tangent
 the third. Both do the same at all times (`events/three_tangents.py`); what slides is braked by the first one alone.
 
 Tangents are counted from the axes of space. What sticks has rows at velocity level along t_1, T_2 and T_3; what slides
-has a direction d, and F = -mu N g as on a patch (`patch3d.py`). With c, s of the angle WAY and l, k of the angle LEAN,
+has a direction d, and F = -mu N g as on a patch (`patch3d.py`). With c, s of `tangent_angle` and l, k of
+`sliding_lean`, cosine and sine of each,
 
     t_1 = (c, s, 0)   t_2 = (-s, c, 0)   n = (0, 0, 1)   d = l t_1 + k n   T_2 = l t_2 + k n   T_3 = l n - k t_2.
 
@@ -14,7 +15,6 @@ The monitor says the components of F along t_1, T_2 and, of the companion, T_3.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 from ..compiled.jit import inlined, internal
@@ -22,7 +22,6 @@ from ..compiled.kernels import POWER, RESIDUAL, TANGENT, line_of
 from ..compiled.views import imat, ivec, mat, vec
 from ..elements.base import Form, Numbering, Row
 from ..elements.joint_friction import JointFrictionForce
-from ..elements.measure3d import columns_of, coordinates_of
 from ..elements.relative_spin3d import (
     add_torque,
     add_torque_by,
@@ -32,12 +31,11 @@ from ..elements.relative_spin3d import (
     spin_by_coordinate,
 )
 from ..laws.friction import CoulombFriction
-from ..model.markers import Marker3D
 from ..model.rotation3d import dot, four, less, plus, space_axes, times
 from ..state.modes import AT_LIMIT, CLOSED, STICKS, memories_at
 from .coulomb3d import TURNED
 from .geometry_kinds import JOINT, are
-from .joint_friction_contact import GAIN, KIND, PAIR, SIZE, SPATIAL, JointFriction, press
+from .joint_friction_contact import GAIN, KIND, PAIR, SIZE, SPATIAL, SpatialJointFriction, press
 from .patch3d import direction, turn_of_direction
 
 ROWS, STOP, WIDTH = 3, SPATIAL, SPATIAL + 1
@@ -177,22 +175,13 @@ def spherical_friction3d_kernel(job: int, t: float, b: Any) -> None:
         _rub(b, job, e)
 
 
-class SphericalJointFriction3D(JointFriction):
+class SphericalJointFriction3D(SpatialJointFriction):
     """Friction of a spherical joint between the bodies of markers in space: one of the two contacts that it is."""
 
     type: Literal["SphericalJointFriction3D"] = "SphericalJointFriction3D"
     kernel: ClassVar[Any] = spherical_friction3d_kernel
-    width: ClassVar[int] = SPATIAL
     companion: ClassVar[int] = 1
     which: ClassVar[float] = FIRST
-
-    a: Marker3D
-    """The first marker."""
-    b: Marker3D
-    """The second marker."""
-
-    def markers(self) -> Sequence[Marker3D]:
-        return (self.a, self.b)
 
     def form_with(self, felt: int) -> Form:
         full = tuple((i, j) for i in range(SPATIAL) for j in range(SPATIAL))
@@ -204,10 +193,9 @@ class SphericalJointFriction3D(JointFriction):
 
     def row(self, numbering: Numbering) -> Row:
         law, size = self._law_columns(numbering), self.size_in(numbering.length)
-        columns = columns_of(self.a, self.b, numbering)
+        columns, coordinates = self.pair(numbering)
         which = (type(self).which, size, self._gain(numbering))
         parameters = (*(0.0,) * 7, *law.parameters, *self._numbers(size), *which, *columns)
-        coordinates = coordinates_of(self.a, self.b, numbering)
         return Row(parameters, (*coordinates, *numbering.internal(self.name)), law.extra)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..laws.friction.base import FrictionCoefficient
-from ..model.base import Name
+from ..model.base import Name, NonNegative, Positive
 from .base import Element, Numbering, Part
 
 
@@ -69,15 +69,59 @@ class JointFrictionForce(Element):
         return () if self.transition is None else super().parts(numbering)
 
 
-def check_radius(friction: JointFrictionForce, radius: float | None) -> None:
-    """Raise ValueError if a coefficient has no radius of a bearing, or a radius no coefficient."""
-    if friction.coefficient > 0.0 and radius is None:
-        raise ValueError(
-            f"'{friction.name}' has a coefficient of {friction.coefficient:g} and no radius that it acts at: give "
-            "`radius`, that of the bearing"
-        )
-    if radius is not None and friction.joint is None:
-        raise ValueError(
-            f"'{friction.name}' has a radius of {radius:g} m and no `joint` whose force acts there: name it, or leave "
-            "the radius out"
-        )
+class TurningFriction(JointFrictionForce):
+    """Base of friction against turning: `torque`, and `coefficient` times `radius` times the force of the `joint`."""
+
+    measured: ClassVar[Literal["angle", "slide"]] = "angle"
+
+    torque: NonNegative = 0.0
+    """While it turns, N m, whatever the joint carries."""
+    radius: Positive | None = None
+    """Of the bearing or the ball, m; needed with a coefficient."""
+    transition_rate: Positive | None = None
+    """Of a regularised law, the rate at which 76 % of the torque act, rad/s; none: the law is Coulomb's."""
+
+    @model_validator(mode="after")
+    def _has_radius(self) -> "TurningFriction":
+        if self.coefficient > 0.0 and self.radius is None:
+            raise ValueError(
+                f"'{self.name}' has a coefficient of {self.coefficient:g} and no radius that it acts at: give "
+                "`radius`, that of the bearing"
+            )
+        if self.radius is not None and self.joint is None:
+            raise ValueError(
+                f"'{self.name}' has a radius of {self.radius:g} m and no `joint` whose force acts there: name it, or "
+                "leave the radius out"
+            )
+        return self
+
+    @property
+    def preload(self) -> float:
+        return self.torque
+
+    @property
+    def transition(self) -> float | None:
+        return self.transition_rate
+
+    @property
+    def arm(self) -> float:
+        return self.coefficient * (self.radius or 0.0)
+
+
+class SlidingFriction(JointFrictionForce):
+    """Base of friction against sliding: `force`, and `coefficient` times the force of the `joint`."""
+
+    measured: ClassVar[Literal["angle", "slide"]] = "slide"
+
+    force: NonNegative = 0.0
+    """While it slides, N, whatever the joint carries."""
+    transition_speed: Positive | None = None
+    """Of a regularised law, the speed at which 76 % of the force act, m/s; none: the law is Coulomb's."""
+
+    @property
+    def preload(self) -> float:
+        return self.force
+
+    @property
+    def transition(self) -> float | None:
+        return self.transition_speed

@@ -7,15 +7,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
-from pydantic import model_validator
-
 from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
-from ..model.base import NonNegative, Positive
 from ..model.rotation3d import dot, four, plus, space_axes, times
 from .base import BodyElement, Numbering, Row
-from .joint_friction import JointFrictionForce, check_radius
+from .joint_friction import TurningFriction
 from .measure3d import columns_of, coordinates_of
 from .measured_force3d import FULL, Pair3D
 from .relative_spin3d import add_torque, add_torque_change, add_torque_tangent, relative_spin, spin_by_coordinate
@@ -55,7 +52,7 @@ def regularised_spherical3d_kernel(job: int, t: float, b: Any) -> None:
             vec(b.a, b.n_extended)[extra[e, 0]] += over * speed * speed
 
 
-class SphericalFriction3D(JointFrictionForce, Pair3D):
+class SphericalFriction3D(TurningFriction, Pair3D):
     """Dry friction of a Spherical3D with the same markers, against the angular velocity of body b on body a: `torque`,
     and `coefficient` times `radius` times the force of the `joint`. It holds all turns of the joint, with a torque in
     any direction up to that size."""
@@ -63,32 +60,7 @@ class SphericalFriction3D(JointFrictionForce, Pair3D):
     type: Literal["SphericalFriction3D"] = "SphericalFriction3D"
     kernel: ClassVar[Any] = regularised_spherical3d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL
-    measured: ClassVar[Literal["angle", "slide"]] = "angle"
     is_spherical: ClassVar[bool] = True
-
-    torque: NonNegative = 0.0
-    """While it turns, N m, whatever the joint carries."""
-    radius: Positive | None = None
-    """Of the ball, m; needed with a coefficient."""
-    transition_rate: Positive | None = None
-    """Of a regularised law, the rate at which 76 % of the torque act, rad/s; none: the law is Coulomb's."""
-
-    @model_validator(mode="after")
-    def _has_radius(self) -> "SphericalFriction3D":
-        check_radius(self, self.radius)
-        return self
-
-    @property
-    def preload(self) -> float:
-        return self.torque
-
-    @property
-    def transition(self) -> float | None:
-        return self.transition_rate
-
-    @property
-    def arm(self) -> float:
-        return self.coefficient * (self.radius or 0.0)
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         super().check_in(bodies)

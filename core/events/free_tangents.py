@@ -1,8 +1,8 @@
 """What closed gaps and other sticking contacts leave free of a contact's tangents.
 
 Rows are numbers: a contact, plus the count of contacts for its first tangent, plus twice that for its second. Tangents
-are those of the contact's frame (COS_WAY, SIN_WAY). Where friction has reached its limit the second one is along it,
-and the first one, across, is held: friction can turn, but not grow.
+are those of the contact's frame (`direction_cos`, `direction_sin`). Where friction has reached its limit the second one
+is along it, and the first one, across, is held: friction can turn, but not grow.
 """
 
 import math

@@ -59,7 +59,7 @@ def _turn_three(instant: Any, rows: Any, count: int, i: int, n: int, back: bool)
 
 @internal
 def _bit(block: int) -> int:
-    """What IMPLIED of the memory says of a row of the normals, of the first or the second tangents."""
+    """What `implied_rows` says of a row of the normals, of the first or the second tangents."""
     return OF_NORMAL if block == 0 else (OF_FIRST if block == 1 else OF_SECOND)
 
 

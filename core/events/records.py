@@ -50,7 +50,7 @@ _PER_CONTACT = (
     "new_slide_mode", "new_ratio",       # what was chosen
     "firmness",                          # one over the root of its relative compliance
     "companion",                         # how far on the contact stands that shares its friction (`three_tangents.py`)
-    "new_implied",                       # which of its rows others imply: IMPLIED of `state/modes.py`
+    "new_implied",                       # which of its rows others imply: `implied_rows` of `state/modes.py`
 )  # fmt: skip
 TOUCHING = np.dtype([(name, np.float64) for name in _PER_CONTACT])
 """What is known of one touching contact."""

@@ -1,6 +1,6 @@
 """Which of the touching contacts are at rest, and which slide, and where to: their rates tell.
 
-What an instant finds out about the direction of sliding is kept as WAY.
+What an instant finds out about the direction of sliding is kept as `tangent_angle`.
 """
 
 import math

@@ -5,8 +5,8 @@ which is the next one, the third, and a second one that nothing moves. Both have
 is asked of both tangents of a contact is asked of those of both: the size of the friction, of the sliding velocity, and
 the direction. `companion` says how far on the other one stands, 1 or -1; 0 of all other contacts.
 
-Where both are at rest their frames, (COS_WAY, SIN_WAY) of each, are a turn about the third axis and one about the first
-tangent after it: as in the plane the second tangent is along a friction that has reached its limit.
+Where both are at rest their frames, (`direction_cos`, `direction_sin`) of each, are a turn about the third axis and
+one about the first tangent after it: as in the plane the second tangent is along a friction at its limit.
 """
 
 import math

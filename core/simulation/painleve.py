@@ -61,7 +61,7 @@ def refuse_passed_jam(sim: "Engine") -> NoReturn:
         row = n + int(np.flatnonzero(rows == sim.assembly.contacts[k].row)[0])
         rhs[: n + len(rows)] = 0.0
         rhs[row] = 1.0
-        # multiplier that gives the gap a unit acceleration: -1/(A_NN + RATIO A_NT), the other contacts included
+        # multiplier that gives the gap a unit acceleration: -1/(A_NN + F_T/F_N A_NT), other contacts included
         if not singular:
             solve_joints(workspace.record)
         found = (not rhs[row] < 0.0, abs(float(rhs[row])))

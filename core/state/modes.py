@@ -24,9 +24,10 @@ AT_ZERO_GAP_OR_FORCE = 3  # the latter where others draw the shapes apart faster
 
 # how a closed contact with friction moves along its tangent; +1 and -1: it slides in that direction
 STICKS = 0.0  # its sliding distance is a constraint
-IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (RATIO)
-AT_LIMIT = 3.0  # in space: others hold it, with its friction RATIO F_N along the second tangent at its limit; along the
+IDLE = 2.0  # it cannot slide because others hold it, and carries a share of its normal force (`friction_ratio`)
+# in space: others hold it, with its friction at its limit along the second tangent, `friction_ratio` F_N; along the
 # first one, across that friction, its sliding is zero, and that row's multiplier turns the direction a little
+AT_LIMIT = 3.0
 
 OF_NORMAL, OF_FIRST, OF_SECOND = 1, 2, 4
 STEP_FORCES = 6
