@@ -86,13 +86,23 @@ def place(sim: Simulation, q: Floats, lam: Floats) -> None:
 
 def tangent(sim: Simulation, c_q: float, c_v: float) -> tuple[Floats, Floats]:
     """M + c_v D + c_q K (n, n) and Phi_q (m_act, n) at the workspace's point."""
-    workspace, n = sim.workspace, sim.assembly.n
+    full, n = _dense_tangent(sim, c_q, c_v), sim.assembly.n
+    return full[:n, :n], full[n : n + sim.workspace.structure.m_act, :n]
+
+
+def multiplier_columns(sim: Simulation) -> Floats:
+    """Phi_q^T (n, multipliers) at the workspace's point, of all `structure.multiplier_rows`: of implied rows too."""
+    return _dense_tangent(sim, 0.0, 0.0)[: sim.assembly.n, sim.assembly.n :]
+
+
+def _dense_tangent(sim: Simulation, c_q: float, c_v: float) -> Floats:
+    workspace = sim.workspace
     evaluate_tangent(workspace.record, c_q, c_v)
     structure = workspace.structure
-    size = n + len(structure.multiplier_rows)
+    size = sim.assembly.n + len(structure.multiplier_rows)
     full = np.zeros((size, size))
     np.add.at(full, (structure.rows, structure.cols), workspace.arrays["values"][: structure.nnz])
-    return full[:n, :n], full[n : n + structure.m_act, :n]
+    return full
 
 
 def matrices(sim: Simulation) -> Matrices:

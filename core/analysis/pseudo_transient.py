@@ -11,6 +11,7 @@ from ..laws import ForceLaw
 from ..simulation.simulation import Simulation
 from ..state.modes import ACTIVE, CLOSED, IDLE, OPEN
 from .at_rest import place, tangent
+from .least_contact_forces import share_contact_loads
 
 Floats = NDArray[np.float64]
 
@@ -46,6 +47,7 @@ class Creep:
         arrays, n = sim.workspace.arrays, sim.assembly.n
         # from rest: forces that depend on speeds, and what impacts did at the start, have no part in this
         sim.memory.mode, sim.memory.slide_mode, sim.memory.friction_ratio = OPEN, IDLE, 0.0
+        sim.memory.implied_rows = 0.0
         self.released: dict[int, int] = {}
         q = arrays["q"][:n].copy()
         sim.use_modes(accelerations=False)
@@ -66,6 +68,7 @@ class Creep:
                     step, before = 0.0, np.inf
                     continue
                 self._check_gaps()
+                self._share_loads()
                 self.unbalanced = balanced
                 return
             size = float(np.max(np.abs(acceleration) / self.scale, initial=0.0))
@@ -233,6 +236,19 @@ class Creep:
             contact = sim.assembly.contacts[k]
             if sim.gap(k) < -ROUNDING * float(sim.workspace.arrays["row_scale"][contact.row]):
                 raise self._lost(f"contact '{contact.name}' cannot be met together with the joints and contacts there")
+
+    def _share_loads(self) -> None:
+        """Let the contacts that touch and stay open, held by others, carry their part of the loads."""
+        sim, size = self.sim, self.sim.workspace.arrays["row_scale"]
+        held = [
+            k
+            for k, contact in enumerate(sim.assembly.contacts)
+            if not isinstance(contact.law, ForceLaw)
+            and sim.memory.mode[k] == OPEN
+            and sim.gap(k) <= ROUNDING * float(size[contact.row])
+        ]
+        if held and not share_contact_loads(sim, held):
+            raise self._lost("contacts that touch balance the loads only if one of them pulls")
 
     def _lost(self, why: str) -> SimulationError:
         sim = self.sim
