@@ -163,7 +163,11 @@ def _say_at_limit(instant: Any, workspace: Any, i: int, tied: bool) -> None:
     contact = touching(instant)
     plane, sticks = not in_space(workspace, ivec(instant.contacts, instant.most)[i]), contact[i].new_slide_mode == STUCK
     if not sticks:
-        ratio = size_of(instant, i, contact.friction_force, contact.friction_force2) / contact[i].normal_force
+        # (without a normal force the quotient is one of rounding)
+        ratio = min(
+            size_of(instant, i, contact.friction_force, contact.friction_force2) / contact[i].normal_force,
+            contact[i].static_friction,
+        )
         contact[i].new_slide_mode = IDLE if plane else AT_LIMIT
         contact[i].new_ratio = (1.0 - TURNS) * ratio if tied else ratio
     if plane:

@@ -2,7 +2,10 @@
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..assembly.partition import prepare
+from ..assembly.structure_switch import ENGAGED, HELD, KINDS
 from ..errors import ConsistencyError, SimulationError
 from ..events.records import (
     ENDLESS_BLOWS,
@@ -18,6 +21,7 @@ from ..events.records import (
     SINGULAR_JOINTS,
     SINGULAR_MATRIX,
 )
+from ..state.modes import ACTIVE, CLOSED, OPEN
 from .painleve import painleve
 
 if TYPE_CHECKING:
@@ -82,13 +86,17 @@ def failure_of(sim: "ContactSide", status: int) -> SimulationError | Consistency
 
 def _inconsistent(sim: "ContactSide") -> ConsistencyError:
     """What `prepare` says of the structure that was tried."""
-    key = sim.workspace.key
+    key, modes = sim.workspace.key, sim.memory.mode.copy()
     try:
         sim.workspace.engage_wanted()
+        # (a contact that is open has no gradients)
+        kinds = sim.workspace.arrays["wanted"][: len(sim.assembly.contacts)] % KINDS
+        sim.memory.mode[: len(kinds)] = np.select([kinds >= HELD, kinds == ENGAGED], [CLOSED, ACTIVE], OPEN)
         prepare(sim.workspace)
     except ConsistencyError as error:
         return error
     finally:
+        sim.memory.mode = modes
         sim.workspace.engage(*key)
     return ConsistencyError(
         f"at t = {sim.t_internal:.9g} s the constraints of the closed contacts are inconsistent, or a derivative of a "
