@@ -95,11 +95,16 @@ def residual_of_cones(
 
 @internal
 def motion_left(n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any) -> float:
-    """What is left of the motion that the conditions want otherwise, in parts of the largest motion without forces."""
+    """What is left of the motion that the conditions want otherwise, in parts of the largest motion without forces, or
+    with the least normal ones: when restitution is added to contacts at rest, these are all that drives them."""
     worst, largest = 0.0, 0.0
+    for i in range(3 * n):
+        with_least = b[i]
+        for l in range(n):
+            with_least += a[i, l] * base[l]
+        largest = max(largest, abs(b[i]), abs(with_least))
     for i in range(n):
         j, k = n + i, 2 * n + i
-        largest = max(largest, abs(b[i]), abs(b[j]), abs(b[k]))
         trial = max(base[i], p[i] - motion_of(a, b, p, i) / a[i, i])
         worst = max(worst, a[i, i] * abs(p[i] - trial))
         size, limit, other = a[j, j] + a[k, k], mu[i] * max(p[i], 0.0), int(way[2, i])

@@ -26,6 +26,7 @@ from ..state.run_records import (
     PUSHES_LEFT,
     REPARTITION,
     STEP_SIZE,
+    STEP_TOO_SMALL,
     STOP_TIME,
     TRIAL_STEP,
     VIOLATED,
@@ -60,16 +61,22 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
         h = min(h, clock[STEP_SIZE])
     if remaining > h > 0.5 * remaining:
         h = 0.5 * remaining
-    least = SHORTEST * min(clock[PUSH_STEP], remaining)
+    least, rows = SHORTEST * min(clock[PUSH_STEP], remaining), loop.rows
+    # a formula that begins with the accelerations of the newest row would begin with those of the contacts' mean forces
+    loop.rows = ONE_STEP
     while True:
         recall(workspace, method, 0)
         vec(drive.last_trial, 1)[0] = -1.0
         status = make_trial(drive, workspace, method, loop, h, np.inf)
-        if status == OK and error[0] <= 1.0:
+        if (status == OK and error[0] <= 1.0) or h <= least:
             break
-        if h <= least:
-            return status
         h *= 0.25
+    loop.rows = rows
+    if status != OK or not error[0] <= 1.0:
+        return STEP_TOO_SMALL if status == OK else status
+    a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
+    for i in range(workspace.n_ext):
+        aux[i] = a[i]
     clock[TRIAL_STEP] = h
     if workspace.n_redundant > 0 and violates_redundant(workspace, 1.0):
         return VIOLATED
@@ -155,8 +162,7 @@ def _end_at_forces(drive: Any, workspace: Any, method: Any, loop: Any, h: float)
     status = NONE
     if call_find_events(loop.find_events, workspace, method, loop, h, False):
         loop.capacity = 0
-        if rows > 1:
-            loop.starter, loop.rows = loop.fine_starter, ONE_STEP
+        loop.starter, loop.rows = loop.fine_starter, ONE_STEP
         status = call_locate(drive.locate, drive, False)
         loop.starter, loop.rows, loop.capacity = starter, rows, kept
     for k in range(workspace.n_contacts):

@@ -41,6 +41,18 @@ def test_a_contact_without_a_force_has_no_friction_to_share():
     assert wrong(10, 0.9) == []
 
 
+@pytest.mark.parametrize("seed", [84, 109])
+def test_impulse_steps_do_not_begin_with_the_mean_forces_of_contacts(seed):
+    """`hht` begins a step with the accelerations of the newest row: impulse steps were tried for ever."""
+    assert thrown_scene(seed).method == "hht"
+    assert wrong(seed, 2.0) == []
+
+
+def test_restitution_of_contacts_at_rest():
+    """What is left of the motion was compared with the motion before the restitution, which was rounding."""
+    assert wrong(124, 2.0) == []
+
+
 @pytest.mark.full
 @pytest.mark.parametrize("seed", range(200))
 def test_two_hundred_scenes(seed):
