@@ -14,6 +14,7 @@ from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
 from .geometry_kinds import OUTLINE, are
+from .pair_table import pair
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 
@@ -120,3 +121,4 @@ class DiskOnBox2D(DiskContact2D):
 
 
 are(OUTLINE, box_gap)
+pair(DiskOnBox2D, shape=Box2D, disk=Disk2D)
