@@ -40,6 +40,11 @@ class Box2D(Record):
             found.append(Disk2D(marker=Marker2D(body=self.marker.body, point=point), radius=radius))
         return tuple(found)
 
+    def outline(self) -> Sequence[tuple[float, float]]:
+        """Its corners along the marker's axes, m, for drawings."""
+        x, y = 0.5 * self.width, 0.5 * self.height
+        return ((-x, -y), (x, -y), (x, y), (-x, y))
+
     def shortest_side(self) -> float:
         """m."""
         return min(self.width, self.height)

@@ -82,6 +82,10 @@ class Polygon2D(Record):
             found.append((x + along * (a[0] + b[0]), y + along * (a[1] + b[1])))
         return found
 
+    def outline(self) -> Sequence[tuple[float, float]]:
+        """Its corners, for drawings."""
+        return self.vertices
+
     def shortest_side(self) -> float:
         """m."""
         return min(math.dist(a, b) for a, b in zip(self.vertices, self.vertices[1:] + self.vertices[:1], strict=True))

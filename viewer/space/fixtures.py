@@ -5,9 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.contacts.contact3d import HalfSpace3D, SphereOnHalfSpace3D
-from ...core.contacts.on_cable3d import CableOnHalfSpace3D
-from ...core.contacts.round3d import SmoothOnHalfSpace3D
+from ...core.contacts.contact3d import Contact3D, HalfSpace3D
 from ...core.contacts.stop3d import DistanceStop3D, Rope3D
 from ...core.elements import (
     AngleDriver3D,
@@ -206,8 +204,11 @@ def _(element: Rope3D | DistanceStop3D, stage: Stage3D) -> None:
 
 
 @place.register
-def _(element: SphereOnHalfSpace3D | SmoothOnHalfSpace3D | CableOnHalfSpace3D, stage: Stage3D) -> None:
-    _ground_under(stage, element.plane.marker)
+def _(element: Contact3D, stage: Stage3D) -> None:
+    """The planes: what touches them is drawn with its body (`shapes.py`)."""
+    for shape in element.shapes():
+        if isinstance(shape, HalfSpace3D):
+            place(shape, stage)
 
 
 @place.register
