@@ -19,7 +19,6 @@ from ..model.markers import Marker2D
 from .contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .disk_contact2d import DiskContact2D
 from .disk_on_box2d import Box2D, DiskOnBox2D
-from .geometry_kinds import OUTLINE, are
 from .pair_table import Make, pair, touching
 from .scalar_contact2d import ScalarContact, scalar_contact
 
@@ -164,7 +163,7 @@ class DiskOnPolygon2D(DiskContact2D):
 
     type: Literal["DiskOnPolygon2D"] = "DiskOnPolygon2D"
     surface_sign: ClassVar[float] = -1.0
-    formula: ClassVar[ScalarContact] = scalar_contact(polygon_gap, polygon_slide)
+    formula: ClassVar[ScalarContact] = scalar_contact(polygon_gap, polygon_slide, convex=True)
 
     shape: Polygon2D
     """The polygon."""
@@ -196,7 +195,6 @@ class DiskOnPolygon2D(DiskContact2D):
         return min(math.dist(a, b) for a, b in zip(self.shape.vertices, self.shape.vertices[1:], strict=False))
 
 
-are(OUTLINE, polygon_gap)
 pair(DiskOnPolygon2D, shape=Polygon2D, disk=Disk2D)
 ANGULAR = (Box2D, Polygon2D)
 """What has corners in the plane."""
