@@ -11,7 +11,17 @@ from ..core.contacts.contact2d import Contact2D, Disk2D, HalfPlane2D
 from ..core.contacts.coordinate_contact import CoordinateContact
 from ..core.contacts.disk_on_line import DiskOnLine2D
 from ..core.contacts.ring2d import Ring2D
-from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
+from ..core.elements import (
+    AxialRod,
+    Bushing2D,
+    Clamp2D,
+    Distance2D,
+    Gear2D,
+    Prismatic2D,
+    Revolute2D,
+    ScalarJoint2D,
+    SpringDamper2D,
+)
 from ..core.model.markers import GROUND, Marker2D
 from .bodies import Stage, has_place
 from .coordinates import coordinate_place
@@ -79,6 +89,14 @@ def _(element: Prismatic2D, stage: Stage) -> None:
 def _(element: Distance2D, stage: Stage) -> None:
     stage.scene.links.append(Link(element.name, "rod", _anchor(stage, element.a), _anchor(stage, element.b)))
     _drawn_ends(element, stage)
+
+
+@place.register
+def _(element: ScalarJoint2D, stage: Stage) -> None:
+    """A rod between its first two markers, of one that has no symbol of its own."""
+    markers = element.markers()
+    if len(markers) > 1:
+        stretched(stage, element.name, "rod", *markers[:2])
 
 
 @place.register
