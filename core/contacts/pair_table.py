@@ -66,8 +66,8 @@ def no_pair(first: Types, second: Types, remedy: str) -> None:
 
 def _add(first: Types, second: Types, what: Found | str) -> None:
     _KNOWN.clear()
-    for both in product(*(each if isinstance(each, tuple) else (each,) for each in (first, second))):
-        _TABLE[both] = what
+    ones, others = (each if isinstance(each, tuple) else (each,) for each in (first, second))
+    _TABLE.update(dict.fromkeys(product(ones, others), what))
 
 
 def contacts_of(a: Any, b: Any) -> Iterable[Make]:

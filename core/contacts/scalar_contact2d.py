@@ -12,6 +12,7 @@ from ..compiled.views import imat, mat, vec
 from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.formula2d import (
     Arguments,
+    FormKey,
     Frame2D,
     argument_names,
     caller_of,
@@ -149,6 +150,10 @@ class ScalarContact2D(Contact2D):
             return None
         return BRISTLE_KIND if isinstance(self.friction, LuGreFriction) else SLIDING_KIND
 
+    def form_key(self) -> FormKey | None:
+        """Kind and formulas of its kernel, by which the library of machine code has it; None where it has none."""
+        return None if self.kind is None else (self.kind, self.formula.formulas)
+
     def geometry(self) -> Any:
         """The formula of its gap."""
         return self.formula.gap
@@ -164,7 +169,8 @@ class ScalarContact2D(Contact2D):
         """Raises ModelError for friction without a sliding distance."""
         arguments, formula = self.arguments(), self.formula
         n, bristles = arguments.size, isinstance(self.friction, LuGreFriction)
-        ahead = None if self.kind is None else form_ahead(self.kind, formula.formulas, arguments)
+        key = self.form_key()
+        ahead = None if key is None else form_ahead(*key, arguments)
         if ahead is not None:
             return replace(ahead, rate_rows=self.rate_rows_of_slide())
         derivatives(formula.gap, arguments)
