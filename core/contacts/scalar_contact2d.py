@@ -41,7 +41,7 @@ PROBES, NOT_EVEN = 7, 1e-9
 class ScalarContact:
     """Gap and sliding distance as formulas of markers and numbers; made by `scalar_contact`."""
 
-    def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None, convex: bool) -> None:
+    def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None, convex: bool = False) -> None:
         self.gap = plain_function(gap)
         self.slide = None if slide is None else plain_function(slide)
         self.convex = convex
