@@ -1,6 +1,7 @@
 """The solver: models, TLISMNI methods, contact. Knows nothing of FMI, exudyn, files, screens.
 
-A name is imported when it is first asked for: what type checkers read, and the table at the end, say the same.
+A name is imported when it is first asked for. This is the one table of them: type checkers read it as it stands, and
+`late_names` reads the same lines. A new element or contact is its file and a line here.
 """
 
 from typing import TYPE_CHECKING
@@ -8,483 +9,226 @@ from typing import TYPE_CHECKING
 from .lazy_import import late_names
 
 if TYPE_CHECKING:
-    from .assembly.redundancy import RedundantRow
-    from .batch_result import Runs
-    from .compiled_model import CompiledModel, compile_model
-    from .contact_solvers.solve_friction import FrictionSolution, solve_friction
-    from .contacts.angle_stop2d import AngleStop2D
-    from .contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
-    from .contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
-    from .contacts.contact3d import HalfSpace3D, Sphere3D, SphereOnHalfSpace3D, SphereOnSphere3D
-    from .contacts.coordinate_contact import CoordinateContact, CoordinateTerm
-    from .contacts.cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
-    from .contacts.disk_on_box2d import Box2D, DiskOnBox2D
-    from .contacts.disk_on_cable import DiskOnCable2D
-    from .contacts.disk_on_line import DiskOnLine2D, Line2D
-    from .contacts.edges3d import EdgesOnEdges3D
-    from .contacts.group2d import ContactGroup2D, contacts_between
-    from .contacts.group3d import ContactGroup3D
-    from .contacts.mesh3d import TriangleMesh3D, read_mesh
-    from .contacts.on_cable3d import CableLine3D, CableOnHalfSpace3D, SphereOnCable3D
-    from .contacts.on_mesh3d import SphereOnMesh3D, mesh_parts
-    from .contacts.polygon2d import DiskOnPolygon2D, Polygon2D
-    from .contacts.ring2d import DiskInRing2D, Ring2D
-    from .contacts.rings3d import Rim3D, Torus3D
-    from .contacts.rope2d import Rope2D
-    from .contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
-    from .contacts.rounds3d import Ellipsoid3D
-    from .contacts.scalar_contact2d import ScalarContact2D, scalar_contact
-    from .contacts.segment2d import DiskOnSegment2D, Segment2D
-    from .contacts.stop3d import AngleStop3D, DistanceStop3D, Rope3D, SlideStop3D
-    from .contacts.support3d import SmoothShape3D, support_formula
-    from .elements import (
-        AngleDriver3D,
-        AppliedForce2D,
-        AppliedForce3D,
-        AppliedTorque2D,
-        AppliedTorque3D,
-        Attachment,
-        AxialRod,
-        AxialSpring3D,
-        Belt2D,
-        BodyElement,
-        Bushing2D,
-        Bushing3D,
-        Cable2D,
-        Cable3D,
-        CableClamp3D,
-        Clamp2D,
-        ConstantVelocity3D,
-        CoordinateDriver,
-        CoordinateLoad,
-        CoordinateRelation,
-        Cylindrical3D,
-        Distance2D,
-        Distance3D,
-        Fixed3D,
-        FloatingBeam2D,
-        ForceElement,
-        Frame2D,
-        Gear2D,
-        Gear3D,
-        Interface3D,
-        InterfaceFrame3D,
-        Joint3D,
-        JointElement,
-        KnifeEdge2D,
-        LinearSystem,
-        MaterialPoint2D,
-        MaterialPoint3D,
-        MovingFrame2D,
-        PIDController2D,
-        PIDController3D,
-        Planar3D,
-        PointMass2D,
-        PointMass3D,
-        PointOnLine3D,
-        PointOnPlane3D,
-        PositionDriver3D,
-        Prismatic2D,
-        Prismatic3D,
-        Rack2D,
-        RackAndPinion3D,
-        ReducedBody2D,
-        ReducedBody3D,
-        ReducedPoint,
-        RelationTerm,
-        RelativeLoad2D,
-        RelativeLoad3D,
-        RelativeMotor2D,
-        Revolute2D,
-        Revolute3D,
-        RevoluteFriction2D,
-        RevoluteFriction3D,
-        RevoluteSpherical3D,
-        RigidBody2D,
-        RigidBody3D,
-        RollingDisk3D,
-        RollingSphere3D,
-        ScalarForce2D,
-        ScalarJoint2D,
-        Screw3D,
-        Servo2D,
-        Servo3D,
-        SlideFriction2D,
-        SlideFriction3D,
-        SlideSpring2D,
-        Spherical3D,
-        SphericalFriction3D,
-        SpringDamper2D,
-        SpringDamper3D,
-        TableSpring2D,
-        TableSpring3D,
-        TorsionSpring2D,
-        TorsionSpring3D,
-        Universal3D,
-        scalar_constraint,
-        scalar_force,
-    )
-    from .equations.errors import EquationError
-    from .equations.system import EquationSystem, GapContact
-    from .errors import ConsistencyError, ConvergenceError, ModelError, SimulationError, TlismniError
-    from .events import Event
-    from .flexible.section_loads import (
-        axial_force,
-        axial_strain,
-        bending_moment,
-        bending_stress,
-        curvature,
-        deformed_shape,
-        section,
-        stress,
-    )
-    from .input_signals import Courses
-    from .laws import (
-        CarvalhoMartins,
-        Flores,
-        ForceLaw,
-        Gonthier,
-        HerbertMcWhannell,
-        Hertz,
-        HuGuo,
-        HuntCrossley,
-        KelvinVoigt,
-        KuwabaraKono,
-        LankaraniNikravesh,
-        LeeWang,
-        NewtonImpact,
-        PoissonImpact,
-        Tsuji,
-        ZhiyingQishao,
-        force_formula,
-    )
-    from .laws.friction import (
-        AmbrosioFriction,
-        BrownMcPheeFriction,
-        CoulombFriction,
-        FrictionLaw,
-        LuGreFriction,
-        StepFriction,
-        TanhFriction,
-        ThrelfallFriction,
-        TurningFriction,
-    )
-    from .laws.stiffness import Material, sphere_on_plane, sphere_on_sphere
-    from .methods.registry import METHODS
-    from .model.attitude import Axes, AxisAngles, EulerParameters, RotationVector
-    from .model.channels import Channel, Formula, Input, Parameter
-    from .model.markers import Marker2D, Marker3D
-    from .model.outputs import MarkerOutput2D, MarkerOutput3D
-    from .model.signals import Constant, InputSignal, Polynomial, Ramp, Sine, Step, Table
-    from .multibody_model import Model
-    from .results.result import Result
-    from .results.stored import load_result
-    from .simulate_batch import simulate_many
-    from .simulate_one import simulate
-    from .simulation.simulation import Simulation
-    from .simulation.state import State
-    from .tolerances import OfScales
+    from .assembly.redundancy import RedundantRow as RedundantRow
+    from .batch_result import Runs as Runs
+    from .compiled_model import CompiledModel as CompiledModel
+    from .compiled_model import compile_model as compile_model
+    from .contact_solvers.solve_friction import FrictionSolution as FrictionSolution
+    from .contact_solvers.solve_friction import solve_friction as solve_friction
+    from .contacts.angle_stop2d import AngleStop2D as AngleStop2D
+    from .contacts.ball_on_round3d import SphereOnCylinder3D as SphereOnCylinder3D
+    from .contacts.ball_on_round3d import SphereOnRing3D as SphereOnRing3D
+    from .contacts.ball_on_round3d import SphereOnSmooth3D as SphereOnSmooth3D
+    from .contacts.contact2d import Disk2D as Disk2D
+    from .contacts.contact2d import DiskOnDisk2D as DiskOnDisk2D
+    from .contacts.contact2d import DiskOnHalfPlane2D as DiskOnHalfPlane2D
+    from .contacts.contact2d import HalfPlane2D as HalfPlane2D
+    from .contacts.contact3d import HalfSpace3D as HalfSpace3D
+    from .contacts.contact3d import Sphere3D as Sphere3D
+    from .contacts.contact3d import SphereOnHalfSpace3D as SphereOnHalfSpace3D
+    from .contacts.contact3d import SphereOnSphere3D as SphereOnSphere3D
+    from .contacts.coordinate_contact import CoordinateContact as CoordinateContact
+    from .contacts.coordinate_contact import CoordinateTerm as CoordinateTerm
+    from .contacts.cornered3d import Box3D as Box3D
+    from .contacts.cornered3d import Capsule3D as Capsule3D
+    from .contacts.cornered3d import ConvexPolyhedron3D as ConvexPolyhedron3D
+    from .contacts.cornered3d import Cylinder3D as Cylinder3D
+    from .contacts.disk_on_box2d import Box2D as Box2D
+    from .contacts.disk_on_box2d import DiskOnBox2D as DiskOnBox2D
+    from .contacts.disk_on_cable import DiskOnCable2D as DiskOnCable2D
+    from .contacts.disk_on_line import DiskOnLine2D as DiskOnLine2D
+    from .contacts.disk_on_line import Line2D as Line2D
+    from .contacts.edges3d import EdgesOnEdges3D as EdgesOnEdges3D
+    from .contacts.group2d import ContactGroup2D as ContactGroup2D
+    from .contacts.group2d import contacts_between as contacts_between
+    from .contacts.group3d import ContactGroup3D as ContactGroup3D
+    from .contacts.mesh3d import TriangleMesh3D as TriangleMesh3D
+    from .contacts.mesh3d import read_mesh as read_mesh
+    from .contacts.on_cable3d import CableLine3D as CableLine3D
+    from .contacts.on_cable3d import CableOnHalfSpace3D as CableOnHalfSpace3D
+    from .contacts.on_cable3d import SphereOnCable3D as SphereOnCable3D
+    from .contacts.on_mesh3d import SphereOnMesh3D as SphereOnMesh3D
+    from .contacts.on_mesh3d import mesh_parts as mesh_parts
+    from .contacts.polygon2d import DiskOnPolygon2D as DiskOnPolygon2D
+    from .contacts.polygon2d import Polygon2D as Polygon2D
+    from .contacts.ring2d import DiskInRing2D as DiskInRing2D
+    from .contacts.ring2d import Ring2D as Ring2D
+    from .contacts.rings3d import Rim3D as Rim3D
+    from .contacts.rings3d import Torus3D as Torus3D
+    from .contacts.rope2d import Rope2D as Rope2D
+    from .contacts.round3d import CapsuleOnCapsule3D as CapsuleOnCapsule3D
+    from .contacts.round3d import SmoothOnHalfSpace3D as SmoothOnHalfSpace3D
+    from .contacts.round3d import SphereInSphere3D as SphereInSphere3D
+    from .contacts.rounds3d import Ellipsoid3D as Ellipsoid3D
+    from .contacts.scalar_contact2d import ScalarContact2D as ScalarContact2D
+    from .contacts.scalar_contact2d import scalar_contact as scalar_contact
+    from .contacts.segment2d import DiskOnSegment2D as DiskOnSegment2D
+    from .contacts.segment2d import Segment2D as Segment2D
+    from .contacts.stop3d import AngleStop3D as AngleStop3D
+    from .contacts.stop3d import DistanceStop3D as DistanceStop3D
+    from .contacts.stop3d import Rope3D as Rope3D
+    from .contacts.stop3d import SlideStop3D as SlideStop3D
+    from .contacts.support3d import SmoothShape3D as SmoothShape3D
+    from .contacts.support3d import support_formula as support_formula
+    from .elements.applied_load2d import AppliedForce2D as AppliedForce2D
+    from .elements.applied_load2d import AppliedTorque2D as AppliedTorque2D
+    from .elements.applied_load3d import AppliedForce3D as AppliedForce3D
+    from .elements.applied_load3d import AppliedTorque3D as AppliedTorque3D
+    from .elements.axial_rod import AxialRod as AxialRod
+    from .elements.base import BodyElement as BodyElement
+    from .elements.base import ForceElement as ForceElement
+    from .elements.base import JointElement as JointElement
+    from .elements.belt2d import Belt2D as Belt2D
+    from .elements.bushing2d import Bushing2D as Bushing2D
+    from .elements.bushing3d import Bushing3D as Bushing3D
+    from .elements.cable2d import Cable2D as Cable2D
+    from .elements.cable3d import Cable3D as Cable3D
+    from .elements.cable_clamp3d import CableClamp3D as CableClamp3D
+    from .elements.clamp2d import Clamp2D as Clamp2D
+    from .elements.coordinate_driver import CoordinateDriver as CoordinateDriver
+    from .elements.coordinate_load import CoordinateLoad as CoordinateLoad
+    from .elements.coordinate_relation import CoordinateRelation as CoordinateRelation
+    from .elements.coordinate_relation import RelationTerm as RelationTerm
+    from .elements.distance2d import Distance2D as Distance2D
+    from .elements.floating_beam2d import Attachment as Attachment
+    from .elements.floating_beam2d import FloatingBeam2D as FloatingBeam2D
+    from .elements.formula2d import Frame2D as Frame2D
+    from .elements.gear2d import Gear2D as Gear2D
+    from .elements.interface_frame3d import InterfaceFrame3D as InterfaceFrame3D
+    from .elements.joint3d import Joint3D as Joint3D
+    from .elements.joint_friction2d import RevoluteFriction2D as RevoluteFriction2D
+    from .elements.joint_friction2d import SlideFriction2D as SlideFriction2D
+    from .elements.joint_friction3d import RevoluteFriction3D as RevoluteFriction3D
+    from .elements.joint_friction3d import SlideFriction3D as SlideFriction3D
+    from .elements.joints3d import AngleDriver3D as AngleDriver3D
+    from .elements.joints3d import ConstantVelocity3D as ConstantVelocity3D
+    from .elements.joints3d import Cylindrical3D as Cylindrical3D
+    from .elements.joints3d import Distance3D as Distance3D
+    from .elements.joints3d import Fixed3D as Fixed3D
+    from .elements.joints3d import Planar3D as Planar3D
+    from .elements.joints3d import PointOnLine3D as PointOnLine3D
+    from .elements.joints3d import PointOnPlane3D as PointOnPlane3D
+    from .elements.joints3d import PositionDriver3D as PositionDriver3D
+    from .elements.joints3d import Prismatic3D as Prismatic3D
+    from .elements.joints3d import Revolute3D as Revolute3D
+    from .elements.joints3d import RevoluteSpherical3D as RevoluteSpherical3D
+    from .elements.joints3d import Spherical3D as Spherical3D
+    from .elements.joints3d import Universal3D as Universal3D
+    from .elements.knife_edge2d import KnifeEdge2D as KnifeEdge2D
+    from .elements.linear_system import LinearSystem as LinearSystem
+    from .elements.material_point2d import MaterialPoint2D as MaterialPoint2D
+    from .elements.material_point3d import MaterialPoint3D as MaterialPoint3D
+    from .elements.moving_frame2d import MovingFrame2D as MovingFrame2D
+    from .elements.pid_controller2d import PIDController2D as PIDController2D
+    from .elements.pid_controller3d import PIDController3D as PIDController3D
+    from .elements.planar_body import PointMass2D as PointMass2D
+    from .elements.planar_body import RigidBody2D as RigidBody2D
+    from .elements.prismatic2d import Prismatic2D as Prismatic2D
+    from .elements.rack2d import Rack2D as Rack2D
+    from .elements.reduced_body2d import ReducedBody2D as ReducedBody2D
+    from .elements.reduced_body2d import ReducedPoint as ReducedPoint
+    from .elements.reduced_body3d import Interface3D as Interface3D
+    from .elements.reduced_body3d import ReducedBody3D as ReducedBody3D
+    from .elements.relation3d import Gear3D as Gear3D
+    from .elements.relation3d import RackAndPinion3D as RackAndPinion3D
+    from .elements.relation3d import Screw3D as Screw3D
+    from .elements.relative_load2d import RelativeLoad2D as RelativeLoad2D
+    from .elements.relative_load3d import RelativeLoad3D as RelativeLoad3D
+    from .elements.relative_motor2d import RelativeMotor2D as RelativeMotor2D
+    from .elements.revolute2d import Revolute2D as Revolute2D
+    from .elements.rolling_joints3d import RollingDisk3D as RollingDisk3D
+    from .elements.rolling_joints3d import RollingSphere3D as RollingSphere3D
+    from .elements.scalar_force2d import ScalarForce2D as ScalarForce2D
+    from .elements.scalar_force2d import scalar_force as scalar_force
+    from .elements.scalar_joint2d import ScalarJoint2D as ScalarJoint2D
+    from .elements.scalar_joint2d import scalar_constraint as scalar_constraint
+    from .elements.servo2d import Servo2D as Servo2D
+    from .elements.servo3d import Servo3D as Servo3D
+    from .elements.slide_spring2d import SlideSpring2D as SlideSpring2D
+    from .elements.spatial_body import PointMass3D as PointMass3D
+    from .elements.spatial_body import RigidBody3D as RigidBody3D
+    from .elements.spherical_friction3d import SphericalFriction3D as SphericalFriction3D
+    from .elements.spring_damper2d import SpringDamper2D as SpringDamper2D
+    from .elements.spring_damper3d import AxialSpring3D as AxialSpring3D
+    from .elements.spring_damper3d import SpringDamper3D as SpringDamper3D
+    from .elements.spring_damper3d import TorsionSpring3D as TorsionSpring3D
+    from .elements.table_spring2d import TableSpring2D as TableSpring2D
+    from .elements.table_spring3d import TableSpring3D as TableSpring3D
+    from .elements.torsion_spring2d import TorsionSpring2D as TorsionSpring2D
+    from .equations.errors import EquationError as EquationError
+    from .equations.system import EquationSystem as EquationSystem
+    from .equations.system import GapContact as GapContact
+    from .errors import ConsistencyError as ConsistencyError
+    from .errors import ConvergenceError as ConvergenceError
+    from .errors import ModelError as ModelError
+    from .errors import SimulationError as SimulationError
+    from .errors import TlismniError as TlismniError
+    from .events import Event as Event
+    from .flexible.section_loads import axial_force as axial_force
+    from .flexible.section_loads import axial_strain as axial_strain
+    from .flexible.section_loads import bending_moment as bending_moment
+    from .flexible.section_loads import bending_stress as bending_stress
+    from .flexible.section_loads import curvature as curvature
+    from .flexible.section_loads import deformed_shape as deformed_shape
+    from .flexible.section_loads import section as section
+    from .flexible.section_loads import stress as stress
+    from .input_signals import Courses as Courses
+    from .laws import CarvalhoMartins as CarvalhoMartins
+    from .laws import Flores as Flores
+    from .laws import ForceLaw as ForceLaw
+    from .laws import Gonthier as Gonthier
+    from .laws import HerbertMcWhannell as HerbertMcWhannell
+    from .laws import Hertz as Hertz
+    from .laws import HuGuo as HuGuo
+    from .laws import HuntCrossley as HuntCrossley
+    from .laws import KelvinVoigt as KelvinVoigt
+    from .laws import KuwabaraKono as KuwabaraKono
+    from .laws import LankaraniNikravesh as LankaraniNikravesh
+    from .laws import LeeWang as LeeWang
+    from .laws import NewtonImpact as NewtonImpact
+    from .laws import PoissonImpact as PoissonImpact
+    from .laws import Tsuji as Tsuji
+    from .laws import ZhiyingQishao as ZhiyingQishao
+    from .laws import force_formula as force_formula
+    from .laws.friction import AmbrosioFriction as AmbrosioFriction
+    from .laws.friction import BrownMcPheeFriction as BrownMcPheeFriction
+    from .laws.friction import CoulombFriction as CoulombFriction
+    from .laws.friction import FrictionLaw as FrictionLaw
+    from .laws.friction import LuGreFriction as LuGreFriction
+    from .laws.friction import StepFriction as StepFriction
+    from .laws.friction import TanhFriction as TanhFriction
+    from .laws.friction import ThrelfallFriction as ThrelfallFriction
+    from .laws.friction import TurningFriction as TurningFriction
+    from .laws.stiffness import Material as Material
+    from .laws.stiffness import sphere_on_plane as sphere_on_plane
+    from .laws.stiffness import sphere_on_sphere as sphere_on_sphere
+    from .methods.registry import METHODS as METHODS
+    from .model.attitude import Axes as Axes
+    from .model.attitude import AxisAngles as AxisAngles
+    from .model.attitude import EulerParameters as EulerParameters
+    from .model.attitude import RotationVector as RotationVector
+    from .model.channels import Channel as Channel
+    from .model.channels import Formula as Formula
+    from .model.channels import Input as Input
+    from .model.channels import Parameter as Parameter
+    from .model.markers import Marker2D as Marker2D
+    from .model.markers import Marker3D as Marker3D
+    from .model.outputs import MarkerOutput2D as MarkerOutput2D
+    from .model.outputs import MarkerOutput3D as MarkerOutput3D
+    from .model.signals import Constant as Constant
+    from .model.signals import InputSignal as InputSignal
+    from .model.signals import Polynomial as Polynomial
+    from .model.signals import Ramp as Ramp
+    from .model.signals import Sine as Sine
+    from .model.signals import Step as Step
+    from .model.signals import Table as Table
+    from .multibody_model import Model as Model
+    from .results.result import Result as Result
+    from .results.stored import load_result as load_result
+    from .simulate_batch import simulate_many as simulate_many
+    from .simulate_one import simulate as simulate
+    from .simulation.simulation import Simulation as Simulation
+    from .simulation.state import State as State
+    from .tolerances import OfScales as OfScales
 
-__all__ = [
-    "METHODS",
-    "AmbrosioFriction",
-    "AngleDriver3D",
-    "AngleStop2D",
-    "AngleStop3D",
-    "AppliedForce2D",
-    "AppliedForce3D",
-    "AppliedTorque2D",
-    "AppliedTorque3D",
-    "Attachment",
-    "Axes",
-    "AxialRod",
-    "AxialSpring3D",
-    "AxisAngles",
-    "Belt2D",
-    "BodyElement",
-    "Box2D",
-    "Box3D",
-    "BrownMcPheeFriction",
-    "Bushing2D",
-    "Bushing3D",
-    "Cable2D",
-    "Cable3D",
-    "CableClamp3D",
-    "CableLine3D",
-    "CableOnHalfSpace3D",
-    "Capsule3D",
-    "CapsuleOnCapsule3D",
-    "CarvalhoMartins",
-    "Channel",
-    "Clamp2D",
-    "CompiledModel",
-    "ConsistencyError",
-    "Constant",
-    "ConstantVelocity3D",
-    "ContactGroup2D",
-    "ContactGroup3D",
-    "ConvergenceError",
-    "ConvexPolyhedron3D",
-    "CoordinateContact",
-    "CoordinateDriver",
-    "CoordinateLoad",
-    "CoordinateRelation",
-    "CoordinateTerm",
-    "CoulombFriction",
-    "Courses",
-    "Cylinder3D",
-    "Cylindrical3D",
-    "Disk2D",
-    "DiskInRing2D",
-    "DiskOnBox2D",
-    "DiskOnCable2D",
-    "DiskOnDisk2D",
-    "DiskOnHalfPlane2D",
-    "DiskOnLine2D",
-    "DiskOnPolygon2D",
-    "DiskOnSegment2D",
-    "Distance2D",
-    "Distance3D",
-    "DistanceStop3D",
-    "EdgesOnEdges3D",
-    "Ellipsoid3D",
-    "EquationError",
-    "EquationSystem",
-    "EulerParameters",
-    "Event",
-    "Fixed3D",
-    "FloatingBeam2D",
-    "Flores",
-    "ForceElement",
-    "ForceLaw",
-    "Formula",
-    "Frame2D",
-    "FrictionLaw",
-    "FrictionSolution",
-    "GapContact",
-    "Gear2D",
-    "Gear3D",
-    "Gonthier",
-    "HalfPlane2D",
-    "HalfSpace3D",
-    "HerbertMcWhannell",
-    "Hertz",
-    "HuGuo",
-    "HuntCrossley",
-    "Input",
-    "InputSignal",
-    "Interface3D",
-    "InterfaceFrame3D",
-    "Joint3D",
-    "JointElement",
-    "KelvinVoigt",
-    "KnifeEdge2D",
-    "KuwabaraKono",
-    "LankaraniNikravesh",
-    "LeeWang",
-    "Line2D",
-    "LinearSystem",
-    "LuGreFriction",
-    "Marker2D",
-    "Marker3D",
-    "MarkerOutput2D",
-    "MarkerOutput3D",
-    "Material",
-    "MaterialPoint2D",
-    "MaterialPoint3D",
-    "Model",
-    "ModelError",
-    "MovingFrame2D",
-    "NewtonImpact",
-    "OfScales",
-    "PIDController2D",
-    "PIDController3D",
-    "Parameter",
-    "Planar3D",
-    "PointMass2D",
-    "PointMass3D",
-    "PointOnLine3D",
-    "PointOnPlane3D",
-    "PoissonImpact",
-    "Polygon2D",
-    "Polynomial",
-    "PositionDriver3D",
-    "Prismatic2D",
-    "Prismatic3D",
-    "Rack2D",
-    "RackAndPinion3D",
-    "Ramp",
-    "ReducedBody2D",
-    "ReducedBody3D",
-    "ReducedPoint",
-    "RedundantRow",
-    "RelationTerm",
-    "RelativeLoad2D",
-    "RelativeLoad3D",
-    "RelativeMotor2D",
-    "Result",
-    "Revolute2D",
-    "Revolute3D",
-    "RevoluteFriction2D",
-    "RevoluteFriction3D",
-    "RevoluteSpherical3D",
-    "RigidBody2D",
-    "RigidBody3D",
-    "Rim3D",
-    "Ring2D",
-    "RollingDisk3D",
-    "RollingSphere3D",
-    "Rope2D",
-    "Rope3D",
-    "RotationVector",
-    "Runs",
-    "ScalarContact2D",
-    "ScalarForce2D",
-    "ScalarJoint2D",
-    "Screw3D",
-    "Segment2D",
-    "Servo2D",
-    "Servo3D",
-    "Simulation",
-    "SimulationError",
-    "Sine",
-    "SlideFriction2D",
-    "SlideFriction3D",
-    "SlideSpring2D",
-    "SlideStop3D",
-    "SmoothOnHalfSpace3D",
-    "SmoothShape3D",
-    "Sphere3D",
-    "SphereInSphere3D",
-    "SphereOnCable3D",
-    "SphereOnCylinder3D",
-    "SphereOnHalfSpace3D",
-    "SphereOnMesh3D",
-    "SphereOnRing3D",
-    "SphereOnSmooth3D",
-    "SphereOnSphere3D",
-    "Spherical3D",
-    "SphericalFriction3D",
-    "SpringDamper2D",
-    "SpringDamper3D",
-    "State",
-    "Step",
-    "StepFriction",
-    "Table",
-    "TableSpring2D",
-    "TableSpring3D",
-    "TanhFriction",
-    "ThrelfallFriction",
-    "TlismniError",
-    "TorsionSpring2D",
-    "TorsionSpring3D",
-    "Torus3D",
-    "TriangleMesh3D",
-    "Tsuji",
-    "TurningFriction",
-    "Universal3D",
-    "ZhiyingQishao",
-    "axial_force",
-    "axial_strain",
-    "bending_moment",
-    "bending_stress",
-    "compile_model",
-    "contacts_between",
-    "curvature",
-    "deformed_shape",
-    "force_formula",
-    "load_result",
-    "mesh_parts",
-    "read_mesh",
-    "scalar_constraint",
-    "scalar_contact",
-    "scalar_force",
-    "section",
-    "simulate",
-    "simulate_many",
-    "solve_friction",
-    "sphere_on_plane",
-    "sphere_on_sphere",
-    "stress",
-    "support_formula",
-]
-
-__getattr__, __dir__ = late_names(
-    __name__,
-    {
-        ".compiled_model": "CompiledModel compile_model",
-        ".input_signals": "Courses",
-        ".multibody_model": "Model",
-        ".elements": (
-            "AngleDriver3D AppliedForce2D AppliedForce3D AppliedTorque2D AppliedTorque3D Attachment AxialRod "
-            "AxialSpring3D Belt2D BodyElement Bushing2D Bushing3D Cable2D Cable3D CableClamp3D Clamp2D "
-            "ConstantVelocity3D CoordinateDriver CoordinateLoad CoordinateRelation Cylindrical3D Distance2D "
-            "Distance3D Fixed3D FloatingBeam2D ForceElement Frame2D Gear2D Gear3D Interface3D InterfaceFrame3D "
-            "Joint3D JointElement KnifeEdge2D LinearSystem MaterialPoint2D MaterialPoint3D MovingFrame2D "
-            "PIDController2D PIDController3D Planar3D PointMass2D PointMass3D PointOnLine3D PointOnPlane3D "
-            "PositionDriver3D Prismatic2D Prismatic3D Rack2D RackAndPinion3D ReducedBody2D ReducedBody3D ReducedPoint "
-            "RelationTerm RelativeLoad2D RelativeLoad3D RelativeMotor2D Revolute2D Revolute3D RevoluteFriction2D "
-            "RevoluteFriction3D RevoluteSpherical3D RigidBody2D RigidBody3D RollingDisk3D RollingSphere3D "
-            "ScalarForce2D ScalarJoint2D Screw3D Servo2D Servo3D SlideFriction2D SlideFriction3D SlideSpring2D "
-            "Spherical3D SphericalFriction3D SpringDamper2D SpringDamper3D TableSpring2D TableSpring3D TorsionSpring2D "
-            "TorsionSpring3D Universal3D scalar_constraint scalar_force"
-        ),
-        ".equations.errors": "EquationError",
-        ".equations.system": "EquationSystem GapContact",
-        ".errors": "ConsistencyError ConvergenceError ModelError SimulationError TlismniError",
-        ".events": "Event",
-        ".flexible.section_loads": (
-            "axial_force axial_strain bending_moment bending_stress curvature deformed_shape section stress"
-        ),
-        ".laws": (
-            "CarvalhoMartins Flores ForceLaw Gonthier HerbertMcWhannell Hertz HuGuo HuntCrossley KelvinVoigt "
-            "KuwabaraKono LankaraniNikravesh LeeWang NewtonImpact PoissonImpact Tsuji ZhiyingQishao force_formula"
-        ),
-        ".laws.friction": (
-            "AmbrosioFriction BrownMcPheeFriction CoulombFriction FrictionLaw LuGreFriction StepFriction "
-            "TanhFriction ThrelfallFriction TurningFriction"
-        ),
-        ".laws.stiffness": "Material sphere_on_plane sphere_on_sphere",
-        ".simulate_batch": "simulate_many",
-        ".methods.registry": "METHODS",
-        ".model.attitude": "Axes AxisAngles EulerParameters RotationVector",
-        ".model.channels": "Channel Formula Input Parameter",
-        ".model.markers": "Marker2D Marker3D",
-        ".model.outputs": "MarkerOutput2D MarkerOutput3D",
-        ".model.signals": "Constant InputSignal Polynomial Ramp Sine Step Table",
-        ".simulate_one": "simulate",
-        ".results.result": "Result",
-        ".results.stored": "load_result",
-        ".simulation.simulation": "Simulation",
-        ".simulation.state": "State",
-        ".batch_result": "Runs",
-        ".contact_solvers.solve_friction": "FrictionSolution solve_friction",
-        ".contacts.angle_stop2d": "AngleStop2D",
-        ".contacts.ball_on_round3d": "SphereOnCylinder3D SphereOnRing3D SphereOnSmooth3D",
-        ".contacts.disk_on_box2d": "Box2D DiskOnBox2D",
-        ".contacts.contact2d": "Disk2D DiskOnDisk2D DiskOnHalfPlane2D HalfPlane2D",
-        ".contacts.contact3d": "HalfSpace3D Sphere3D SphereOnHalfSpace3D SphereOnSphere3D",
-        ".contacts.coordinate_contact": "CoordinateContact CoordinateTerm",
-        ".contacts.cornered3d": "Box3D Capsule3D ConvexPolyhedron3D Cylinder3D",
-        ".contacts.disk_on_cable": "DiskOnCable2D",
-        ".contacts.disk_on_line": "DiskOnLine2D Line2D",
-        ".contacts.edges3d": "EdgesOnEdges3D",
-        ".contacts.group2d": "ContactGroup2D contacts_between",
-        ".contacts.group3d": "ContactGroup3D",
-        ".contacts.mesh3d": "TriangleMesh3D read_mesh",
-        ".contacts.on_cable3d": "CableLine3D CableOnHalfSpace3D SphereOnCable3D",
-        ".contacts.on_mesh3d": "SphereOnMesh3D mesh_parts",
-        ".contacts.polygon2d": "DiskOnPolygon2D Polygon2D",
-        ".contacts.ring2d": "DiskInRing2D Ring2D",
-        ".contacts.rings3d": "Rim3D Torus3D",
-        ".contacts.rope2d": "Rope2D",
-        ".contacts.round3d": "CapsuleOnCapsule3D SmoothOnHalfSpace3D SphereInSphere3D",
-        ".contacts.rounds3d": "Ellipsoid3D",
-        ".contacts.scalar_contact2d": "ScalarContact2D scalar_contact",
-        ".contacts.segment2d": "DiskOnSegment2D Segment2D",
-        ".contacts.stop3d": "AngleStop3D DistanceStop3D Rope3D SlideStop3D",
-        ".contacts.support3d": "SmoothShape3D support_formula",
-        ".assembly.redundancy": "RedundantRow",
-        ".tolerances": "OfScales",
-    },
-)
+__getattr__, __dir__, __all__ = late_names(__name__)

@@ -1,24 +1,35 @@
 """Joints, forces and the shapes that contacts touch, as parts of a scene."""
 
 import math
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
-from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ..core.contacts.contact2d import Contact2D, Disk2D, HalfPlane2D
 from ..core.contacts.coordinate_contact import CoordinateContact
-from ..core.contacts.disk_on_cable import DiskOnCable2D
 from ..core.contacts.disk_on_line import DiskOnLine2D
-from ..core.contacts.segment2d import DiskOnSegment2D
-from ..core.elements import AxialRod, Bushing2D, Clamp2D, Distance2D, Gear2D, Prismatic2D, Revolute2D, SpringDamper2D
+from ..core.contacts.ring2d import Ring2D
+from ..core.elements import (
+    AxialRod,
+    Bushing2D,
+    Clamp2D,
+    Distance2D,
+    Gear2D,
+    Prismatic2D,
+    Revolute2D,
+    ScalarJoint2D,
+    SpringDamper2D,
+)
 from ..core.model.markers import GROUND, Marker2D
 from .bodies import Stage, has_place
 from .coordinates import coordinate_place
 from .drawing import symbols
+from .drawing.contact_shapes import laid, shapes_of, show
 from .drawing.interactions import draw_interaction
 from .drawing.shapes import GROUND as GROUND_COLOUR
-from .drawing.shapes import INK, STEEL, TOUCH, Circle, Drawing, Path, Point, moved, turned
+from .drawing.shapes import INK, STEEL, TOUCH, Circle, Drawing, Path, moved, turned
 from .scene import Floats, Frame, Line, Link, Part
 
 GRIP = 0.13
@@ -78,6 +89,14 @@ def _(element: Prismatic2D, stage: Stage) -> None:
 def _(element: Distance2D, stage: Stage) -> None:
     stage.scene.links.append(Link(element.name, "rod", _anchor(stage, element.a), _anchor(stage, element.b)))
     _drawn_ends(element, stage)
+
+
+@place.register
+def _(element: ScalarJoint2D, stage: Stage) -> None:
+    """A rod between its first two markers, of one that has no symbol of its own."""
+    markers = element.markers()
+    if len(markers) > 1:
+        stretched(stage, element.name, "rod", *markers[:2])
 
 
 @place.register
@@ -150,27 +169,15 @@ def _drawn_ends(element: Distance2D, stage: Stage) -> None:
 
 
 @place.register
-def _(element: DiskOnHalfPlane2D, stage: Stage) -> None:
-    marker = element.plane.marker
-    near, far = _touched(stage, element)
-    known = stage.planes.get(marker, (near, far))
-    stage.planes[marker] = min(near, known[0]), max(far, known[1])
-    _disk(element.disk, stage)
-
-
-@place.register
-def _(element: DiskOnDisk2D, stage: Stage) -> None:
-    _disk(element.a, stage)
-    _disk(element.b, stage)
-
-
-@place.register
-def _(element: DiskOnSegment2D, stage: Stage) -> None:
-    drawing, segment = Drawing(stage.size), element.segment
-    width = max(0.8, 200.0 * segment.radius / stage.size)
-    drawing.shapes.append(Path(((0.0, 0.0), (segment.length, 0.0)), TOUCH, width=width))
-    _on_marker(stage, segment.marker, 1, drawing)
-    _disk(element.disk, stage)
+def _(element: Contact2D, stage: Stage) -> None:
+    shapes = shapes_of(element)
+    for shape in shapes:
+        if isinstance(shape, HalfPlane2D):
+            near, far = _touched(stage, shape.marker, [other for other in shapes if other is not shape])
+            known = stage.planes.get(shape.marker, (near, far))
+            stage.planes[shape.marker] = min(near, known[0]), max(far, known[1])
+        else:
+            _shape(shape, stage, 2 if isinstance(shape, Disk2D) else 0 if isinstance(shape, Ring2D) else 1)
 
 
 @place.register
@@ -180,12 +187,7 @@ def _(element: DiskOnLine2D, stage: Stage) -> None:
     found = Line(element.name, nodes, 2.0 * line.radius, line.rounding, line.closed)
     if all(found.nodes != other.nodes for other in stage.scene.lines):
         stage.scene.lines.append(found)
-    _disk(element.disk, stage)
-
-
-@place.register
-def _(element: DiskOnCable2D, stage: Stage) -> None:
-    _disk(element.disk, stage)
+    _shape(element.disk, stage, 2)
 
 
 @place.register
@@ -244,31 +246,16 @@ def _add_walls(stage: Stage) -> None:
         stage.scene.parts.append(Part(stage.number(GROUND), 0, shapes))
 
 
-def _disk(disk: Disk2D, stage: Stage) -> None:
-    """A disk, unless another contact has shown it."""
-    drawing, u = Drawing(stage.size), stage.size
-    if disk.radius > 0.004 * u:
-        drawing.shapes.append(Circle((0.0, 0.0), disk.radius, TOUCH, None, 0.5))
-    else:
-        drawing.shapes.append(Circle((0.0, 0.0), 0.008 * u, TOUCH, TOUCH, 0.2))
-    _on_marker(stage, disk.marker, 2, drawing)
+def _shape(shape: Any, stage: Stage, layer: int) -> None:
+    """A shape, unless another contact has shown it."""
+    drawing = Drawing(stage.size)
+    show(shape, drawing)
+    _on_marker(stage, shape.marker, layer, drawing)
 
 
 def _on_marker(stage: Stage, marker: Marker2D, layer: int, drawing: Drawing) -> None:
     """Shapes in a marker's frame, put on its body; the same ones only once."""
-    (x, y), angle = marker.point, marker.angle
-
-    def there(p: Point) -> Point:
-        dx, dy = turned(p, angle)
-        return x + dx, y + dy
-
-    shapes: list[Path | Circle] = []
-    for s in (*drawing.behind, *drawing.shapes):
-        if isinstance(s, Circle):
-            shapes.append(Circle(there(s.centre), s.radius, s.stroke, s.fill, s.width))
-        elif isinstance(s, Path):
-            points = tuple(there(p) for p in s.points)
-            shapes.append(Path(points, s.stroke, s.fill, s.width, s.closed, s.dashed))
+    shapes = laid((*drawing.behind, *drawing.shapes), marker.point, marker.angle)
     part = Part(stage.number(marker.body), layer, tuple(shapes))
     if part not in stage.scene.parts:
         stage.scene.parts.append(part)
@@ -281,16 +268,17 @@ def _reach(stage: Stage, marker: Marker2D, places: Floats, margin: float) -> tup
     return min(0.0, float(along.min())) - margin * stage.size, max(0.0, float(along.max())) + margin * stage.size
 
 
-def _touched(stage: Stage, element: DiskOnHalfPlane2D) -> tuple[float, float]:
-    """The part of a half-plane's line where the disk comes near it, with a margin; m along the line."""
-    marker = element.plane.marker
-    places, angle = stage.motion.at(element.disk.marker), stage.motion.direction(marker)
-    away = places - stage.motion.at(marker)
-    height = away[:, 1] * np.cos(angle) - away[:, 0] * np.sin(angle) - element.disk.radius
-    near = height <= max(float(height.min()), 0.0) + CLOSE * stage.size
-    along = (away[:, 0] * np.cos(angle) + away[:, 1] * np.sin(angle))[near]
-    margin = GRIP * stage.size
-    return float(along.min()) - margin, float(along.max()) + margin
+def _touched(stage: Stage, marker: Marker2D, shapes: Sequence[Any]) -> tuple[float, float]:
+    """The part of a half-plane's line where shapes come near it, with a margin; m along the line."""
+    margin, angle = GRIP * stage.size, stage.motion.direction(marker)
+    ends = [0.0, 0.0] if not shapes else []
+    for shape in shapes:
+        away = stage.motion.at(shape.marker) - stage.motion.at(marker)
+        height = away[:, 1] * np.cos(angle) - away[:, 0] * np.sin(angle) - getattr(shape, "radius", 0.0)
+        near = height <= max(float(height.min()), 0.0) + CLOSE * stage.size
+        along = (away[:, 0] * np.cos(angle) + away[:, 1] * np.sin(angle))[near]
+        ends += [float(along.min()), float(along.max())]
+    return min(ends) - margin, max(ends) + margin
 
 
 def _anchor(stage: Stage, marker: Marker2D) -> Any:

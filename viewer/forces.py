@@ -1,6 +1,7 @@
 """Forces as arrows: of contacts, joints and applied loads."""
 
-from collections.abc import Callable, Collection
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import singledispatch
 from typing import Any
 
@@ -11,8 +12,10 @@ from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
 from ..core.contacts.coordinate_contact import CoordinateContact
 from ..core.contacts.disk_on_cable import DiskOnCable2D
 from ..core.contacts.disk_on_line import DiskOnLine2D
+from ..core.contacts.scalar_contact2d import ScalarContact2D
 from ..core.contacts.segment2d import DiskOnSegment2D
 from ..core.elements import AppliedForce2D, Distance2D, Revolute2D
+from ..core.elements.formula2d import Frame2D, argument_names
 from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .bodies import Stage
 from .coordinates import coordinate_place
@@ -22,6 +25,12 @@ Values = Callable[[str], Floats | None]
 """A channel over the frames by name, None where there is none."""
 Touch = tuple[Floats, Floats]
 """Places (F, 2) of contact, and unit normals (F, 2) onto the disk (of two, disk b)."""
+SMALL = 1e-6
+"""Of the scene's size, and in rad: by which markers are moved for the gradients of gaps."""
+CLOSE = 0.01
+"""Of the scene's size: up to which gap the place of a contact is looked for."""
+FEW = 20
+"""Frames that tell which way a sliding distance grows."""
 
 
 def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
@@ -38,7 +47,8 @@ def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
         vector = force[:, None] * normal
         friction = values(f"{contact.name}.friction_force")
         if friction is not None and not isinstance(contact, CoordinateContact):
-            vector = vector + friction[:, None] * np.stack([normal[:, 1], -normal[:, 0]], axis=1)
+            right = np.stack([normal[:, 1], -normal[:, 0]], axis=1)
+            vector = vector + _slides_right(contact, stage, right) * friction[:, None] * right
         stage.scene.arrows.append(Arrow(contact.name, "contact", "N", at, vector))
     for joint in model.joints:
         if isinstance(joint, Revolute2D):
@@ -115,6 +125,72 @@ def _(contact: CoordinateContact, stage: Stage) -> Touch | None:
             axis = (0.0, np.sign(term.factor)) if term.coordinate.startswith("y") else (np.sign(term.factor), 0.0)
             return at, np.tile(axis, (len(at), 1))
     return None
+
+
+@touch.register
+def _(contact: ScalarContact2D, stage: Stage) -> Touch | None:
+    """On the line of action that the gradient of the gap gives: of a disk on its rim, else where that line is nearest
+    to the marker that the gap names last; None of one without a direction, such as an angle."""
+    last, disk = _last_marker(contact)
+    place, gap = stage.motion.at(getattr(contact, last)), contact.formula.gap
+    rows = np.flatnonzero(_values(contact, gap, stage, range(len(place))) <= CLOSE * stage.size)
+    gradient = np.zeros((len(place), 3))
+    gradient[rows] = _gradient(contact, gap, last, stage, rows.tolist())
+    square = np.sum(gradient[:, :2] ** 2, axis=1)
+    if not np.any(square > 0.0):
+        return None
+    lever = np.divide(gradient[:, 2], square, out=np.zeros_like(square), where=square > 0.0)
+    foot = place + lever[:, None] * np.stack([gradient[:, 1], -gradient[:, 0]], axis=1)
+    normal = _unit(gradient[:, :2])
+    return foot - (0.0 if disk is None else disk.radius) * normal, normal
+
+
+def _slides_right(contact: Any, stage: Stage, right: Floats) -> float:
+    """-1 where the sliding distance of a contact grows against `right` (F, 2), its normals turned by -90 degrees."""
+    if not isinstance(contact, ScalarContact2D) or contact.formula.slide is None:
+        return 1.0
+    rows = np.flatnonzero(np.any(right != 0.0, axis=1))
+    rows = rows[:: max(1, len(rows) // FEW)]
+    along = _gradient(contact, contact.formula.slide, _last_marker(contact)[0], stage, rows.tolist())[:, :2]
+    # but for where an angle goes round
+    return float(np.sign(np.median(np.sum(along * right[rows], axis=1))))
+
+
+def _last_marker(contact: ScalarContact2D) -> tuple[str, Disk2D | None]:
+    """The marker of a contact's disk by its name in the formulas, else the last one; and the disk."""
+    names, disk = contact.arguments().markers, next(iter(contact.disks()), None)
+    at = next((name for name in names if disk is not None and getattr(contact, name) == disk.marker), None)
+    return (names[-1], None) if at is None else (at, disk)
+
+
+def _gradient(
+    contact: ScalarContact2D, formula: Callable[..., Any], last: str, stage: Stage, rows: Sequence[int]
+) -> Floats:
+    """Derivatives (N, 3) of a formula by the place and the angle of one of its markers in some frames, by central
+    differences."""
+    small = (SMALL * stage.size, SMALL * stage.size, SMALL)
+    moves = [[x if k == i else 0.0 for i in range(3)] for k, x in enumerate(small)]
+    ends = [
+        [_values(contact, formula, stage, rows, {last: [way * x for x in move]}) for way in (1.0, -1.0)]
+        for move in moves
+    ]
+    return np.stack([(up - down) / (2.0 * x) for (up, down), x in zip(ends, small, strict=True)], axis=1)
+
+
+def _values(
+    contact: ScalarContact2D, formula: Callable[..., Any], stage: Stage, rows: Sequence[int],
+    moves: Mapping[str, Sequence[float]] | None = None,
+) -> Floats:  # fmt: skip
+    """A formula of a contact in some frames (N,), markers moved by so much (x, y, angle)."""
+    names, frames = argument_names(formula), {}
+    for name in contact.arguments().markers:
+        marker = getattr(contact, name)
+        place = np.column_stack([stage.motion.at(marker), stage.motion.direction(marker)])[rows]
+        moved = place + (moves or {}).get(name, (0.0, 0.0, 0.0))
+        frames[name] = [Frame2D(x, y, w, math.cos(w), math.sin(w)) for x, y, w in moved.tolist()]
+    fixed = {name: [float(getattr(contact, name))] * len(rows) for name in names if name not in frames}
+    given = {**fixed, **frames}
+    return np.array([formula(*row) for row in zip(*(given[name] for name in names), strict=True)], dtype=float)
 
 
 def _nearest(stage: Stage, disk: Disk2D, line: Floats) -> Touch:

@@ -5,9 +5,6 @@ import math
 import numpy as np
 
 from ..core.contacts.angle_stop2d import AngleStop2D
-from ..core.contacts.disk_on_box2d import DiskOnBox2D
-from ..core.contacts.polygon2d import DiskOnPolygon2D
-from ..core.contacts.ring2d import DiskInRing2D
 from ..core.contacts.rope2d import Rope2D
 from ..core.elements import (
     Belt2D,
@@ -24,7 +21,7 @@ from ..core.model.markers import Marker2D
 from .bodies import Stage
 from .drawing import symbols
 from .drawing.shapes import INK, TOUCH, Circle, Drawing, Path, turned
-from .fixtures import SPOKES, _disk, _on_marker, _reach, place, stretched
+from .fixtures import SPOKES, _on_marker, _reach, place, stretched
 
 REACH = 0.14
 """Length of the marks of an end stop, in parts of the scene's size."""
@@ -80,32 +77,6 @@ def _(element: AngleStop2D, stage: Stage) -> None:
     hand = Drawing(stage.size)
     hand.shapes.append(Path(((0.0, 0.0), (far, 0.0)), TOUCH, width=0.4, dashed=True))
     _on_marker(stage, element.b, 1, hand)
-
-
-@place.register
-def _(element: DiskOnPolygon2D, stage: Stage) -> None:
-    drawing = Drawing(stage.size)
-    drawing.shapes.append(Path(element.shape.vertices, TOUCH, width=0.5, closed=True))
-    _on_marker(stage, element.shape.marker, 1, drawing)
-    if element.disk.radius > 0.0:
-        _disk(element.disk, stage)
-
-
-@place.register
-def _(element: DiskInRing2D, stage: Stage) -> None:
-    drawing = Drawing(stage.size)
-    drawing.shapes.append(Circle((0.0, 0.0), element.shape.radius, TOUCH, None, 0.9))
-    _on_marker(stage, element.shape.marker, 0, drawing)
-    _disk(element.disk, stage)
-
-
-@place.register
-def _(element: DiskOnBox2D, stage: Stage) -> None:
-    drawing, (x, y) = Drawing(stage.size), (0.5 * element.shape.width, 0.5 * element.shape.height)
-    drawing.shapes.append(Path(((-x, -y), (x, -y), (x, y), (-x, y)), TOUCH, width=0.5, closed=True))
-    _on_marker(stage, element.shape.marker, 1, drawing)
-    if element.disk.radius > 0.0:
-        _disk(element.disk, stage)
 
 
 @place.register

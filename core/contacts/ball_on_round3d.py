@@ -1,6 +1,7 @@
 """Contacts of spheres with round shapes in space: smooth ones, cylinders and disks, rings."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -10,9 +11,10 @@ from ..model.markers import Marker3D
 from .contact3d import Contact3D, Sphere3D
 from .cornered3d import Cylinder3D
 from .moving_point3d import ON_CYLINDER, ON_RING, ON_SMOOTH
+from .pair_table import Make, pair, touching
 from .rings3d import Rim3D, Torus3D
 from .round3d import Smooth3D
-from .support3d import SUPPORT_NUMBERS, support_address
+from .support3d import SUPPORT_NUMBERS, SmoothShape3D, support_address
 
 
 class _BallOnRound3D(Contact3D):
@@ -156,3 +158,14 @@ class SphereOnRing3D(_BallOnRound3D):
             numbering, ring.marker, self.sphere.marker, ring.rim_radius, self.sphere.radius, extents=(ring.radius, 0.0),
             numbers=(ring.radius, 0.0, 0.0, 0.0),
         )  # fmt: skip
+
+
+pair(SphereOnCylinder3D, shape=Cylinder3D, sphere=Sphere3D)
+pair(SphereOnSmooth3D, shape=SmoothShape3D, sphere=Sphere3D)
+
+
+@touching(Torus3D, Sphere3D)
+def _ring_or_disk(ring: Torus3D, sphere: Sphere3D) -> Sequence[Make]:
+    if ring.rim_radius == 0.0:
+        return [partial(SphereOnCylinder3D, shape=ring, sphere=sphere)]
+    return [partial(SphereOnRing3D, ring=ring, sphere=sphere)]

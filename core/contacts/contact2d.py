@@ -14,6 +14,7 @@ from ..rounding import LEAST_DEFLECTION
 from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
 from .element import ContactElement
 from .normal2d import disk_on_disk_kernel, disk_on_half_plane_kernel
+from .pair_table import pair
 from .sliding2d import sliding_disk_on_disk_kernel, sliding_disk_on_half_plane_kernel
 
 
@@ -147,3 +148,7 @@ class DiskOnDisk2D(Contact2D):
 
     def markers(self) -> Sequence[Marker2D]:
         return (self.a.marker, self.b.marker)
+
+
+pair(DiskOnHalfPlane2D, plane=HalfPlane2D, disk=Disk2D)
+pair(DiskOnDisk2D, a=Disk2D, b=Disk2D)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import Any, ClassVar, Literal, cast
 
 import numpy as np
@@ -22,6 +22,7 @@ from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .moving_point3d import HOLLOW, ON_MESH, POINT_OF_CABLE, SEGMENTS, SUPPORT
 from .normal3d import SIZE
+from .pair_table import Make, no_pair, pair, touching
 from .support3d import SUPPORT_NUMBERS
 from .surface3d import FIRST, SECOND
 
@@ -236,3 +237,13 @@ class SphereOnSphere3D(Contact3D):
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.a.marker, self.b.marker)
+
+
+pair(SphereOnHalfSpace3D, plane=HalfSpace3D, sphere=Sphere3D)
+no_pair(HalfSpace3D, HalfSpace3D, "both reach to infinity; take a box for the one that moves")
+
+
+@touching(Sphere3D, Sphere3D)
+def _two_spheres(a: Sphere3D, b: Sphere3D) -> Sequence[Make]:
+    """Two points never touch."""
+    return [partial(SphereOnSphere3D, a=a, b=b)] if a.radius + b.radius > 0.0 else []

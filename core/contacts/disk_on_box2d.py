@@ -13,7 +13,7 @@ from ..model.base import Positive, Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
-from .geometry_kinds import OUTLINE, are
+from .pair_table import pair
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 
@@ -38,6 +38,11 @@ class Box2D(Record):
             point = (x0 + c * u - s * w, y0 + s * u + c * w)
             found.append(Disk2D(marker=Marker2D(body=self.marker.body, point=point), radius=radius))
         return tuple(found)
+
+    def outline(self) -> Sequence[tuple[float, float]]:
+        """Its corners along the marker's axes, m, for drawings."""
+        x, y = 0.5 * self.width, 0.5 * self.height
+        return ((-x, -y), (x, -y), (x, y), (-x, y))
 
     def shortest_side(self) -> float:
         """m."""
@@ -89,7 +94,7 @@ class DiskOnBox2D(DiskContact2D):
 
     type: Literal["DiskOnBox2D"] = "DiskOnBox2D"
     surface_sign: ClassVar[float] = -1.0
-    formula: ClassVar[ScalarContact] = scalar_contact(box_gap, box_slide)
+    formula: ClassVar[ScalarContact] = scalar_contact(box_gap, box_slide, convex=True)
 
     shape: Box2D
     """The box."""
@@ -119,4 +124,4 @@ class DiskOnBox2D(DiskContact2D):
         return min(self.shape.width, self.shape.height) + 2.0 * self.disk.radius
 
 
-are(OUTLINE, box_gap)
+pair(DiskOnBox2D, shape=Box2D, disk=Disk2D)

@@ -6,8 +6,7 @@ smooth where shapes touch, since the hulls themselves stay the radii apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any, ClassVar, Literal, cast
 
 import numpy as np
@@ -17,6 +16,7 @@ from pydantic import Field, model_validator
 from ..elements.base import Numbering, Row
 from ..elements.spatial_body import start_of_marker
 from ..errors import ModelError
+from ..laws import ForceLaw
 from ..model.markers import Marker3D
 from ..model.signals import Signal
 from ..model.words import an
@@ -29,8 +29,10 @@ from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3
 from .mesh_parts import normals_of
 from .moving_point3d import ON_MESH
 from .moving_surface import Numbers
-from .on_mesh3d import MeshPart
+from .on_mesh3d import on_faces
 from .overlap3d import apart
+from .pair_table import Make, touching
+from .round3d import CapsuleOnCapsule3D
 
 ROUND = 1e-3
 """Of its smallest edge: radius of the edges of a box that is given none, where two sharp shapes touch."""
@@ -41,47 +43,6 @@ TILT = 0.01
 """Of the sum of the radii over the longest edge: sine of the angle below which corners carry in place of edges."""
 
 EdgedShape3D = Annotated[Box3D | ConvexPolyhedron3D | Capsule3D, Field(discriminator="type")]
-
-
-@dataclass(frozen=True)
-class EdgesPart:
-    """Edges of one sort of a shape, against those of another shape that are of a sort too."""
-
-    shape: Edged3D
-    sort_a: int
-    sort_b: int
-    made_round: bool
-    """Whether shapes without any radius have been rounded, for this contact alone."""
-
-
-def contacts_of_edged(a: Edged3D, b: Edged3D) -> Sequence[tuple[Edged3D | Sphere3D, MeshPart | Sphere3D | EdgesPart]]:
-    """Pairs that are the contacts of two shapes of which one at least is no capsule.
-
-    Raises
-    ------
-    ModelError : for two polyhedra without radius, and for one whose vertices lie in one plane.
-    """
-    made_round = not a.rounding() + b.rounding() > 0.0
-    if made_round:
-        a, b = _rounded(a), _rounded(b)
-    if not a.rounding() + b.rounding() > 0.0:
-        raise ModelError(
-            f"the polyhedra on '{a.marker.body}' and '{b.marker.body}' have sharp edges, which have no normal where "
-            "they meet: give one of them a `radius`, a thousandth of its size say, by which it is thicker all round"
-        )
-    pairs: list[tuple[Edged3D | Sphere3D, MeshPart | Sphere3D | EdgesPart]] = []
-    for one, other in ((a, b), (b, a)):
-        if isinstance(other, Capsule3D):
-            pairs += [(other, corner) for corner in one.corners()]
-        else:
-            pairs += [(corner, MeshPart(faces_of(other), 0, other.rounding())) for corner in one.corners()]
-    sorts = len(edge_sorts(a)), len(edge_sorts(b))
-    pairs += [(a, EdgesPart(b, i, j, made_round)) for i in range(sorts[0]) for j in range(sorts[1])]
-    return tuple(pairs)
-
-
-def _rounded(shape: Edged3D) -> Edged3D:
-    return shape.model_copy(update={"edge_radius": ROUND * min(shape.size)}) if isinstance(shape, Box3D) else shape
 
 
 class EdgesOnEdges3D(Contact3D):
@@ -204,3 +165,52 @@ def _edges_on_body(shape: Edged3D, numbers: Sequence[int], shorter: float) -> ND
     ways = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(ways, axis=1, keepdims=True)
     return np.hstack([ends.mean(axis=1), ways / length, np.maximum(0.5 * length - shorter, 0.0)])
+
+
+@touching((Box3D, ConvexPolyhedron3D), (Box3D, ConvexPolyhedron3D, Capsule3D))
+@touching(Capsule3D, (Box3D, ConvexPolyhedron3D))
+def _corners_and_edges(a: Edged3D, b: Edged3D) -> Sequence[Make]:
+    """Of two shapes of which one at least is no capsule.
+
+    Raises
+    ------
+    ModelError : for two polyhedra without radius, and for one whose vertices lie in one plane.
+    """
+    made_round = not a.rounding() + b.rounding() > 0.0
+    if made_round:
+        a, b = _rounded(a), _rounded(b)
+    if not a.rounding() + b.rounding() > 0.0:
+        raise ModelError(
+            f"the polyhedra on '{a.marker.body}' and '{b.marker.body}' have sharp edges, which have no normal where "
+            "they meet: give one of them a `radius`, a thousandth of its size say, by which it is thicker all round"
+        )
+    found: list[Make] = []
+    for one, other in ((a, b), (b, a)):
+        if isinstance(other, Capsule3D):
+            found += [partial(CapsuleOnCapsule3D, a=other, b=corner) for corner in one.corners()]
+        else:
+            found += [make for corner in one.corners() for make in on_faces(corner, other)]
+    sorts = len(edge_sorts(a)), len(edge_sorts(b))
+    return found + [
+        partial(_across, made_round, a=a, b=b, sort_a=i, sort_b=j) for i in range(sorts[0]) for j in range(sorts[1])
+    ]
+
+
+def _rounded(shape: Edged3D) -> Edged3D:
+    return shape.model_copy(update={"edge_radius": ROUND * min(shape.size)}) if isinstance(shape, Box3D) else shape
+
+
+def _across(made_round: bool, **fields: Any) -> EdgesOnEdges3D:
+    """The contact of edges of two shapes; made_round : shapes without any radius have been rounded for it alone.
+
+    Raises
+    ------
+    ModelError : for a force law, if they have been.
+    """
+    if made_round and isinstance(fields["law"], ForceLaw):
+        raise ModelError(
+            f"contact '{fields['name']}' is of sharp shapes, which a {type(fields['law']).__name__} lets sink into "
+            "each other: edges pass through one another where they sink in by more than both are rounded. Give one of "
+            "them a radius that is larger (`edge_radius` of a box), or take a law such as NewtonImpact"
+        )
+    return EdgesOnEdges3D(**fields)

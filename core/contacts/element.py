@@ -9,7 +9,7 @@ from pydantic import model_validator
 from ..elements.base import BodyElement, Element, Numbering, Row
 from ..laws import ContactLaw, ForceLaw
 from ..laws.friction import CoulombFriction, Friction, LuGreFriction
-from ..model.base import Positive, Vector3
+from ..model.base import Positive, Record, Vector3
 from ..model.markers import GROUND
 from ..model.signals import Constant, Signal
 from .moving_surface import Numbers
@@ -113,6 +113,11 @@ class ContactElement(Element):
     def geometry(self) -> Any:
         """What says how its gap moves with the shapes (`geometry_kinds.py`): its kernel."""
         return self.form().kernel
+
+    def shapes(self) -> Sequence[Record]:
+        """The shapes that it brings in touch: its fields that have a marker."""
+        values = (getattr(self, name) for name in type(self).model_fields)
+        return [value for value in values if isinstance(value, Record) and hasattr(value, "marker")]
 
     def disks(self) -> Sequence[Any]:
         """The planar disks (`Disk2D`) that it brings in touch, for the drawing."""

@@ -1,46 +1,37 @@
 """Contacts between groups of shapes, instead of pairs listed by hand.
 
-Which pairs can touch follows from the shapes: a disk with a half-plane, a disk, a box, a polygon, a segment or a ring
-around it; a box or polygon with a half-plane and with others by the corners; in space see `pairs3d.py`. Pairs on one
-body are left out. Pairs that are far from touching cost nothing during a run: contacts sleep until their margin is used
-up (`event_detection/contact_sleeping.py`).
+Which pairs can touch follows from the shapes (`pair_table.py`). Pairs on one body are left out. Pairs that are far from
+touching cost nothing during a run: contacts sleep until their margin is used up
+(`event_detection/contact_sleeping.py`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import combinations, product
-from typing import Any, Literal
+from typing import Literal
 
 from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Positive, Vector3
-from ..model.markers import GROUND
+from ..model.base import Name, Positive, Record, Vector3
 from ..model.signals import Signal
-from .contact2d import Contact2D, Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D, HalfPlane2D
+from . import CONTACTS
+from .contact2d import Contact2D, Disk2D, HalfPlane2D
 from .contact3d import Contact3D
-from .disk_on_box2d import Box2D, DiskOnBox2D
+from .disk_on_box2d import Box2D
 from .group_surfaces import with_surface
 from .groups import ContactGroup
-from .pairs3d import SpatialPart, SpatialShape, body_of, contact_in_space, no_contact, open_contacts
-from .polygon2d import DiskOnPolygon2D, Polygon2D
-from .ring2d import DiskInRing2D, Ring2D
-from .segment2d import DiskOnSegment2D, Segment2D
-
-PlanarShape = Disk2D | HalfPlane2D | Box2D | Polygon2D | Segment2D | Ring2D
-ANGULAR = (Box2D, Polygon2D)
-"""What has corners in the plane."""
-GroupShape = PlanarShape | SpatialShape
+from .pair_table import Make, body_of, contacts_of, in_plane
+from .polygon2d import Polygon2D
+from .ring2d import Ring2D
+from .segment2d import Segment2D
 
 MOST_PAIRS = 200_000
-ROUND = 1e-3
-"""Of the shortest side of both: radius of corners where shapes with corners touch each other. A point that comes along
-a side to a corner of the same height would touch neither of the sides that strike."""
 
 
 def contacts_between(
     name: str,
-    shapes: Iterable[GroupShape],
-    others: Iterable[GroupShape] | None = None,
+    shapes: Iterable[Record],
+    others: Iterable[Record] | None = None,
     *,
     law: ContactLaw,
     friction: Friction | None = None,
@@ -78,21 +69,24 @@ def contacts_between(
     pairs = combinations(first, 2) if second is None else product(first, second)
     apart = {frozenset(pair) for pair in except_bodies}
     through = _kinds_apart(name, pass_through, (*first, *(second or ())))
-    named: dict[str, list[tuple[GroupShape, GroupShape | SpatialPart]]] = {}
+    len(CONTACTS)  # all are imported, so that the table is complete
+    named: dict[str, list[tuple[bool, Make]]] = {}
     for a, b in pairs:
         bodies = body_of(a), body_of(b)
         if bodies[0] == bodies[1] or frozenset(bodies) in apart:
             continue
         if frozenset((type(a).__name__, type(b).__name__)) in through:
             continue
-        found = [*_touching(a, b)]
+        found = [(in_plane(a), make) for make in contacts_of(a, b)]
         named.setdefault(f"{name}_{bodies[0]}_{bodies[1]}", []).extend(found)
-    made = []
+    made: list[Contact2D | Contact3D] = []
     for label, touching in named.items():
-        for k, (one, other) in enumerate(touching):
+        for k, (planar, make) in enumerate(touching):
             own = label if len(touching) == 1 else f"{label}_{k + 1}"
-            more = {"name": own, "law": law, "friction": friction, "compliance": compliance}
-            made.append(_contact(one, other, turning, more))
+            more = {} if planar else {"turning": turning}
+            contact = make(name=own, law=law, friction=friction, compliance=compliance, **more)
+            assert isinstance(contact, Contact2D | Contact3D)
+            made.append(contact)
     if not made:
         raise ModelError(
             f"group '{name}' has no two shapes that can touch: disks touch all shapes, boxes touch boxes and "
@@ -139,7 +133,7 @@ class ContactGroup2D(ContactGroup):
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
-        shapes: tuple[GroupShape, ...] = (
+        shapes: tuple[Record, ...] = (
             *self.disks, *self.boxes, *self.polygons, *self.segments, *self.half_planes, *self.rings,
         )  # fmt: skip
         return contacts_between(
@@ -149,7 +143,7 @@ class ContactGroup2D(ContactGroup):
         )  # fmt: skip
 
 
-def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[GroupShape]) -> set[frozenset[str]]:
+def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[Record]) -> set[frozenset[str]]:
     """The pairs of kinds that pass through each other. Raises ModelError for a kind that is not there."""
     there, found = sorted({type(shape).__name__ for shape in shapes}), [tuple(pair) for pair in pairs]
     missing = next((kind for pair in found for kind in pair if kind not in there), None)
@@ -159,52 +153,3 @@ def _kinds_apart(name: str, pairs: Iterable[tuple[str, str]], shapes: Iterable[G
             f"{', '.join(there) or 'none'}; mend the name in pass_through or leave the pair out"
         )
     return {frozenset(pair) for pair in found}
-
-
-def _touching(a: GroupShape, b: GroupShape) -> Sequence[tuple[GroupShape, GroupShape | SpatialPart]]:
-    """Pairs (what, disk or sphere, or place on a cable) that say the contact of two shapes."""
-    if isinstance(a, SpatialShape) and isinstance(b, SpatialShape):
-        return open_contacts(a, b)
-    if isinstance(a, SpatialShape) or isinstance(b, SpatialShape):
-        raise no_contact(a, b, "one is of the plane and one of space; make a group of each")
-    if isinstance(b, Disk2D):
-        return ((a, b),)
-    if isinstance(a, Disk2D):
-        return ((b, a),)
-    if isinstance(a, ANGULAR) and isinstance(b, ANGULAR):
-        radius = ROUND * min(a.shortest_side(), b.shortest_side())
-        return (*((a, corner) for corner in b.corners(radius)), *((b, corner) for corner in a.corners(radius)))
-    if isinstance(a, ANGULAR):
-        a, b = b, a
-    if isinstance(b, ANGULAR):
-        if isinstance(a, HalfPlane2D):
-            return tuple((a, corner) for corner in b.corners())
-        remedy = "make the segment a thin box" if isinstance(a, Segment2D) else "put disks at its corners"
-        raise no_contact(b, a, f"{remedy}, or let them pass through each other (pass_through)")
-    if body_of(a) == body_of(b) == GROUND:
-        return ()
-    raise no_contact(a, b, "give one of them disks at its corners, or let them pass through each other (pass_through)")
-
-
-def _contact(
-    a: GroupShape, other: GroupShape | SpatialPart, turning: TurningFriction | None, more: dict[str, Any]
-) -> Contact2D | Contact3D:
-    """The contact of a pair; `more` are the fields that those of all pairs have."""
-    if isinstance(a, SpatialShape):
-        assert isinstance(other, SpatialShape | SpatialPart)
-        return contact_in_space(a, other, {**more, "turning": turning})
-    if not isinstance(other, Disk2D):
-        raise TypeError("the second shape of a pair is a disk")
-    if isinstance(a, HalfPlane2D):
-        return DiskOnHalfPlane2D(plane=a, disk=other, **more)
-    if isinstance(a, Disk2D):
-        return DiskOnDisk2D(a=a, b=other, **more)
-    if isinstance(a, Box2D):
-        return DiskOnBox2D(shape=a, disk=other, **more)
-    if isinstance(a, Polygon2D):
-        return DiskOnPolygon2D(shape=a, disk=other, **more)
-    if isinstance(a, Ring2D):
-        return DiskInRing2D(shape=a, disk=other, **more)
-    if isinstance(a, Segment2D):
-        return DiskOnSegment2D(segment=a, disk=other, **more)
-    raise TypeError("a disk touches no shapes of space")

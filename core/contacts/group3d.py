@@ -4,12 +4,12 @@ from typing import Literal
 
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Positive, Vector3
+from ..model.base import Name, Positive, Record, Vector3
 from ..model.signals import Signal
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
-from .group2d import GroupShape, contacts_between
+from .group2d import contacts_between
 from .groups import ContactGroup
 from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D
@@ -65,7 +65,7 @@ class ContactGroup3D(ContactGroup):
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
         box and a cylinder, if `pass_through` does not name them."""
-        cornered: tuple[GroupShape, ...] = (
+        cornered: tuple[Record, ...] = (
             *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
             *self.cables,
         )  # fmt: skip

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
-from ..lazy_import import LateClasses
+from ..lazy_import import RecordsOf
 from ..model.base import Name
 from ..model.open_union import OpenRecord, OpenUnion
 from .element import ContactElement
@@ -20,7 +20,7 @@ class ContactGroup(OpenRecord):
         raise NotImplementedError(f"{type(self).__name__} must make its contacts")
 
 
-GROUPS = LateClasses(str(__package__), "ContactGroup2D ContactGroup3D")
+GROUPS = RecordsOf(str(__package__), ContactGroup)
 Group = Annotated[ContactGroup, OpenUnion(GROUPS, ContactGroup)]
 
 

@@ -1,7 +1,7 @@
 """The records of contacts with an ANCF cable in space. Their kernels are in `cable_contact3d.py`."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Field, model_validator
@@ -19,6 +19,7 @@ from .cable_contact3d import cable3d_contact_kernel, gripping_cable3d_kernel, ru
 from .cable_foot3d import VECTORS, WIDTH
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .moving_point3d import ON_CABLE, POINT_OF_CABLE
+from .pair_table import Make, touching
 
 
 class CableLine3D(Record):
@@ -36,15 +37,6 @@ class CableLine3D(Record):
     def places(self) -> tuple[float, ...]:
         """Where they are, in parts of the cable's length."""
         return tuple(k / (self.points - 1) for k in range(self.points))
-
-
-@dataclass(frozen=True)
-class CableSpot:
-    """A point of a cable that touches half-spaces."""
-
-    line: CableLine3D
-    place: float
-    """In parts of the cable's length."""
 
 
 class CableContact3D(Contact3D):
@@ -174,3 +166,14 @@ class CableOnHalfSpace3D(CableContact3D):
         element, x = cable.find(self.place * cable.length)
         at = weights(x, cable.length / cable.elements, 0).tolist()
         return self._row_on(numbering, self.plane.marker, 0.0, element, at, (0, 1))
+
+
+@touching(CableLine3D, Sphere3D)
+def _sphere_on_line(line: CableLine3D, sphere: Sphere3D) -> Sequence[Make]:
+    return [partial(SphereOnCable3D, cable=line.cable, thickness=line.thickness, sphere=sphere)]
+
+
+@touching(HalfSpace3D, CableLine3D)
+def _points_on_plane(plane: HalfSpace3D, line: CableLine3D) -> Sequence[Make]:
+    fields = {"plane": plane, "cable": line.cable, "thickness": line.thickness}
+    return [partial(CableOnHalfSpace3D, **fields, place=place) for place in line.places]

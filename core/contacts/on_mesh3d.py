@@ -1,7 +1,7 @@
 """The record of a contact between a sphere and a mesh of triangles. Its kernels are in `mesh_contact3d.py`."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, cast
 
 import numpy as np
@@ -12,21 +12,15 @@ from ..model.base import NonNegative
 from ..model.markers import Marker3D
 from ..model.signals import Signal
 from .contact3d import Contact3D, Sphere3D
+from .cornered3d import Box3D, ConvexPolyhedron3D
+from .hull_faces import faces_of
 from .mesh3d import TriangleMesh3D
 from .mesh_contact3d import gripping_mesh3d_kernel, mesh3d_kernel, rubbing_mesh3d_kernel
 from .mesh_nearest3d import STRIDE, table_of
 from .mesh_parts import Points, parts_of
 from .moving_point3d import ON_MESH
 from .moving_surface import Numbers
-
-
-@dataclass(frozen=True)
-class MeshPart:
-    """A part of a mesh, rounded by so much, that a sphere touches at one place."""
-
-    mesh: TriangleMesh3D
-    part: int
-    rounding: float = 0.0
+from .pair_table import Make, touching
 
 
 def mesh_parts(mesh: TriangleMesh3D) -> tuple[tuple[int, ...], ...]:
@@ -103,3 +97,14 @@ class SphereOnMesh3D(Contact3D):
     def _reach(self) -> float:
         """How far a corner of the mesh is from its marker, m."""
         return float(np.linalg.norm(np.array(self.mesh.vertices), axis=1).max())
+
+
+@touching(Sphere3D, TriangleMesh3D)
+def _parts_of_mesh(sphere: Sphere3D, mesh: TriangleMesh3D) -> Sequence[Make]:
+    return [partial(SphereOnMesh3D, mesh=mesh, part=k, sphere=sphere) for k in range(len(mesh_parts(mesh)))]
+
+
+@touching(Sphere3D, (Box3D, ConvexPolyhedron3D))
+def on_faces(sphere: Sphere3D, shape: Box3D | ConvexPolyhedron3D) -> Sequence[Make]:
+    """Of a sphere with the faces of a shape."""
+    return [partial(SphereOnMesh3D, mesh=faces_of(shape), rounding=shape.rounding(), sphere=sphere)]

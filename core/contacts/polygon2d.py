@@ -7,6 +7,7 @@ sides.) Inside the same side counts. A point (radius 0) on a polygon is the corn
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -15,11 +16,15 @@ from pydantic import field_validator
 from ..elements.formula2d import Frame2D
 from ..model.base import Record
 from ..model.markers import Marker2D
-from .contact2d import Disk2D
+from .contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .disk_contact2d import DiskContact2D
-from .geometry_kinds import OUTLINE, are
+from .disk_on_box2d import Box2D, DiskOnBox2D
+from .pair_table import Make, pair, touching
 from .scalar_contact2d import ScalarContact, scalar_contact
 
+ROUND = 1e-3
+"""Of the shortest side of both: radius of corners where shapes with corners touch each other. A point that comes along
+a side to a corner of the same height would touch neither of the sides that strike."""
 MOST_SIDES = 8
 """Of a polygon."""
 FEWEST_SIDES = 3
@@ -75,6 +80,10 @@ class Polygon2D(Record):
             along = radius / (1.0 + a[0] * b[0] + a[1] * b[1])
             found.append((x + along * (a[0] + b[0]), y + along * (a[1] + b[1])))
         return found
+
+    def outline(self) -> Sequence[tuple[float, float]]:
+        """Its corners, for drawings."""
+        return self.vertices
 
     def shortest_side(self) -> float:
         """m."""
@@ -154,7 +163,7 @@ class DiskOnPolygon2D(DiskContact2D):
 
     type: Literal["DiskOnPolygon2D"] = "DiskOnPolygon2D"
     surface_sign: ClassVar[float] = -1.0
-    formula: ClassVar[ScalarContact] = scalar_contact(polygon_gap, polygon_slide)
+    formula: ClassVar[ScalarContact] = scalar_contact(polygon_gap, polygon_slide, convex=True)
 
     shape: Polygon2D
     """The polygon."""
@@ -186,4 +195,24 @@ class DiskOnPolygon2D(DiskContact2D):
         return min(math.dist(a, b) for a, b in zip(self.shape.vertices, self.shape.vertices[1:], strict=False))
 
 
-are(OUTLINE, polygon_gap)
+pair(DiskOnPolygon2D, shape=Polygon2D, disk=Disk2D)
+ANGULAR = (Box2D, Polygon2D)
+"""What has corners in the plane."""
+
+
+@touching(HalfPlane2D, ANGULAR)
+def _corners_on_plane(plane: HalfPlane2D, shape: Box2D | Polygon2D) -> Sequence[Make]:
+    return [partial(DiskOnHalfPlane2D, plane=plane, disk=corner) for corner in shape.corners()]
+
+
+@touching(ANGULAR, ANGULAR)
+def _corners_on_sides(a: Box2D | Polygon2D, b: Box2D | Polygon2D) -> Sequence[Make]:
+    """The corners of each on the sides of the other."""
+    radius = ROUND * min(a.shortest_side(), b.shortest_side())
+    return [*_corners_on(a, b.corners(radius)), *_corners_on(b, a.corners(radius))]
+
+
+def _corners_on(shape: Box2D | Polygon2D, corners: Sequence[Disk2D]) -> Sequence[Make]:
+    if isinstance(shape, Box2D):
+        return [partial(DiskOnBox2D, shape=shape, disk=corner) for corner in corners]
+    return [partial(DiskOnPolygon2D, shape=shape, disk=corner) for corner in corners]

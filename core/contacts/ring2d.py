@@ -13,8 +13,10 @@ from pydantic import model_validator
 from ..elements.formula2d import Frame2D
 from ..model.base import Positive, Record
 from ..model.markers import Marker2D
+from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
 from .geometry_kinds import RING, are
+from .pair_table import pair
 from .scalar_contact2d import ScalarContact, scalar_contact
 
 
@@ -76,3 +78,4 @@ class DiskInRing2D(DiskContact2D):
 
 
 are(RING, ring_gap)
+pair(DiskInRing2D, shape=Ring2D, disk=Disk2D)

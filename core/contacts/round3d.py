@@ -1,7 +1,7 @@
 """Contacts of round shapes in space: smooth shapes on half-spaces, spheres in hollow spheres, capsules."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -9,9 +9,10 @@ from pydantic import Field, model_validator
 from ..elements.base import Numbering, Row
 from ..model.markers import Marker3D
 from ..model.open_union import OpenUnion
-from .contact3d import Contact3D, HalfSpace3D, Sphere3D
-from .cornered3d import Capsule3D
+from .contact3d import Contact3D, HalfSpace3D, Sphere3D, SphereOnHalfSpace3D
+from .cornered3d import Capsule3D, Cornered3D, Cylinder3D
 from .moving_point3d import HOLLOW, SEGMENTS, SUPPORT
+from .pair_table import Make, pair, touching
 from .rings3d import Rim3D, Torus3D
 from .rounds3d import Ellipsoid3D
 from .support3d import SmoothShape3D, support_address
@@ -57,25 +58,6 @@ TILT = 0.1
 two that lie on one another by their ends are nearer by TILT^2/8 of the sum of the radii, less than they draw back."""
 
 
-@dataclass(frozen=True)
-class Crossing:
-    """A capsule against another one, as far as they are not parallel."""
-
-    capsule: Capsule3D
-    tilt: float
-
-
-def capsule_contacts(a: Capsule3D, b: Capsule3D) -> Sequence[tuple[Capsule3D, Crossing | Sphere3D]]:
-    """Pairs that are the contacts of two capsules: of their axes, and of the ends of each with the other."""
-    short_a, short_b = (c.model_copy(update={"length": (1.0 - SHORTER) * c.length}) for c in (a, b))
-    tilt = min(TILT * (a.radius + b.radius) / max(a.length, b.length), 0.5)
-    return (
-        (short_a, Crossing(short_b, tilt)),
-        *((b, end) for end in a.corners()),
-        *((short_a, end) for end in b.corners()),
-    )
-
-
 class SphereInSphere3D(Contact3D):
     """Contact of a sphere with the inside of a hollow one: gap = difference of the radii - distance of the centres."""
 
@@ -116,7 +98,7 @@ class CapsuleOnCapsule3D(Contact3D):
     """Contact of two capsules, or of a capsule and a sphere, at their nearest points.
 
     Capsules that are parallel touch in the middle of where they lie side by side, at one place, which is no way to lie
-    on one another: `contacts_between` and groups make five contacts, of the axes and of the ends (`capsule_contacts`).
+    on one another: `contacts_between` and groups make five contacts, of the axes and of the ends (`_two_capsules`).
     """
 
     type: Literal["CapsuleOnCapsule3D"] = "CapsuleOnCapsule3D"
@@ -153,3 +135,34 @@ class CapsuleOnCapsule3D(Contact3D):
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.a.marker, self.b.marker)
+
+
+pair(SmoothOnHalfSpace3D, plane=HalfSpace3D, shape=SmoothShape3D)
+pair(CapsuleOnCapsule3D, a=Capsule3D, b=Sphere3D)
+
+
+@touching(HalfSpace3D, (Cylinder3D, Torus3D))
+def _rims_on_plane(plane: HalfSpace3D, shape: Cylinder3D | Torus3D) -> Sequence[Make]:
+    return [
+        partial(SphereOnHalfSpace3D, plane=plane, sphere=part)
+        if isinstance(part, Sphere3D)
+        else partial(SmoothOnHalfSpace3D, plane=plane, shape=part)
+        for part in shape.touching()
+    ]
+
+
+@touching(HalfSpace3D, Cornered3D)
+def _corners_on_plane(plane: HalfSpace3D, shape: Cornered3D) -> Sequence[Make]:
+    return [partial(SphereOnHalfSpace3D, plane=plane, sphere=corner) for corner in shape.corners()]
+
+
+@touching(Capsule3D, Capsule3D)
+def _two_capsules(a: Capsule3D, b: Capsule3D) -> Sequence[Make]:
+    """Of their axes, and of the ends of each with the other."""
+    short_a, short_b = (c.model_copy(update={"length": (1.0 - SHORTER) * c.length}) for c in (a, b))
+    tilt = min(TILT * (a.radius + b.radius) / max(a.length, b.length), 0.5)
+    return [
+        partial(CapsuleOnCapsule3D, a=short_a, b=short_b, parallel_tilt=tilt),
+        *(partial(CapsuleOnCapsule3D, a=b, b=end) for end in a.corners()),
+        *(partial(CapsuleOnCapsule3D, a=short_a, b=end) for end in b.corners()),
+    ]

@@ -1,19 +1,31 @@
 """Contacts from formulas: a gap function, and a sliding distance for friction."""
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import combinations
 from typing import Any, ClassVar
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
-from ..elements.base import Form, Numbering, Row
-from ..elements.formula2d import Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
+from ..elements.base import BodyElement, Form, Numbering, Row
+from ..elements.formula2d import (
+    Arguments,
+    FormKey,
+    Frame2D,
+    argument_names,
+    caller_of,
+    derivatives,
+    form_ahead,
+    plain_function,
+)
 from ..errors import ModelError
 from ..laws.friction import LuGreFriction
 from ..model.markers import Marker2D
 from .bristle2d import act_bristles
 from .contact2d import Contact2D
+from .geometry_kinds import OUTLINE, are
 from .normal2d import act
 from .sliding2d import act_sliding
 
@@ -22,14 +34,19 @@ KIND, SLIDING_KIND, BRISTLE_KIND = "scalar_contact2d", "sliding_scalar_contact2d
 PERIOD, FIRST = 0, 16
 """Columns of the table of parameters: by how much the sliding distance may jump, and the first one of the formulas;
 7 to 15 are those of the laws."""
+PROBES, NOT_EVEN = 7, 1e-9
+"""Directions in which a gap is looked at, and what rounding may do to it, in parts of the shape's size."""
 
 
 class ScalarContact:
     """Gap and sliding distance as formulas of markers and numbers; made by `scalar_contact`."""
 
-    def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None) -> None:
+    def __init__(self, gap: Callable[..., Any], slide: Callable[..., Any] | None, convex: bool = False) -> None:
         self.gap = plain_function(gap)
         self.slide = None if slide is None else plain_function(slide)
+        self.convex = convex
+        if convex:
+            are(OUTLINE, self.gap)
 
     @property
     def formulas(self) -> tuple[Callable[..., Any], ...]:
@@ -42,7 +59,9 @@ class ScalarContact:
         return (*argument_names(self.gap), *(() if self.slide is None else argument_names(self.slide)))
 
 
-def scalar_contact(gap: Callable[..., Any], slide: Callable[..., Any] | None = None) -> ScalarContact:
+def scalar_contact(
+    gap: Callable[..., Any], slide: Callable[..., Any] | None = None, *, convex: bool = False
+) -> ScalarContact:
     """A contact from formulas, for `ScalarContact2D`.
 
     Parameters
@@ -51,12 +70,15 @@ def scalar_contact(gap: Callable[..., Any], slide: Callable[..., Any] | None = N
         the direction of the normal force, so that |gradient| by the points is 1 for a force in N.
     slide : m, how far the shapes have slid on each other, for friction; its gradient is the direction of the friction
         force. For wheels it counts their rolling.
+    convex : whether the gap is the distance of its second marker's point from a convex shape on its first one, less a
+        number, as that of a disk: then it is bounded within a step, and no touch is missed (`separation.py`). Below
+        zero it may be any convex continuation, such as that by the nearest side.
 
     Raises
     ------
     ModelError : for what is no function.
     """
-    return ScalarContact(gap, slide)
+    return ScalarContact(gap, slide, convex)
 
 
 @internal
@@ -128,6 +150,10 @@ class ScalarContact2D(Contact2D):
             return None
         return BRISTLE_KIND if isinstance(self.friction, LuGreFriction) else SLIDING_KIND
 
+    def form_key(self) -> FormKey | None:
+        """Kind and formulas of its kernel, by which the library of machine code has it; None where it has none."""
+        return None if self.kind is None else (self.kind, self.formula.formulas)
+
     def geometry(self) -> Any:
         """The formula of its gap."""
         return self.formula.gap
@@ -143,7 +169,8 @@ class ScalarContact2D(Contact2D):
         """Raises ModelError for friction without a sliding distance."""
         arguments, formula = self.arguments(), self.formula
         n, bristles = arguments.size, isinstance(self.friction, LuGreFriction)
-        ahead = None if self.kind is None else form_ahead(self.kind, formula.formulas, arguments)
+        key = self.form_key()
+        ahead = None if key is None else form_ahead(*key, arguments)
         if ahead is not None:
             return replace(ahead, rate_rows=self.rate_rows_of_slide())
         derivatives(formula.gap, arguments)
@@ -160,6 +187,43 @@ class ScalarContact2D(Contact2D):
         size = n + bristles
         full = tuple((i, j) for i in range(size) for j in range(size))
         return Form(kernel, rows, full, tuple((k, j) for k in range(rows) for j in range(n)), self.rate_rows_of_slide())
+
+    def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
+        super().check_in(bodies)
+        if self.formula.convex and not self.formula.gap.__module__.startswith("tlismni."):
+            self.check_convex()
+
+    def check_convex(self) -> None:
+        """Raise ValueError if its gap is no distance from a convex shape, by points around it."""
+        arguments, gap = self.arguments(), self.formula.gap
+        names, numbers = argument_names(gap), {name: float(getattr(self, name)) for name in arguments.numbers}
+        if len(arguments.markers) != 2:
+            raise ValueError(
+                f"the gap of {type(self).__name__} is said to be that of a convex shape and a point, but it has "
+                f"{len(arguments.markers)} markers: give it that of the shape and that of the point, or leave out "
+                "`convex`"
+            )
+        frames = {arguments.markers[0]: Frame2D(0.0, 0.0, 0.0, 1.0, 0.0)}
+        size = max((abs(x) for x in numbers.values()), default=0.0) or 1.0
+
+        def at(x: float, y: float, angle: float = 0.0) -> float:
+            frames[arguments.markers[1]] = Frame2D(x, y, angle, math.cos(angle), math.sin(angle))
+            return float(gap(*({**numbers, **frames}[name] for name in names)))
+
+        points = [(r * size * math.cos(k), r * size * math.sin(k)) for k in range(PROBES) for r in (0.5, 1.5, 4.0)]
+        small, seen = NOT_EVEN * size, [(x, y, at(x, y)) for x, y in points]
+        for (x, y, here), (u, w, there) in combinations(seen, 2):
+            if abs(here - there) > math.dist((x, y), (u, w)) + small or abs(at(u, w, 1.0) - there) > small:
+                what = "grows faster than its point goes, or turns with it"
+            elif at(0.5 * (x + u), 0.5 * (y + w)) > 0.5 * (here + there) + small:
+                what = "is larger between two points than at both in the mean"
+            else:
+                continue
+            raise ValueError(
+                f"the gap of {type(self).__name__} is said to be the distance from a convex shape, but {what}, from "
+                f"({x:.3g}, {y:.3g}) and ({u:.3g}, {w:.3g}) m from the shape's marker: mend the formula, or leave out "
+                "`convex`"
+            )
 
     def row(self, numbering: Numbering) -> Row:
         arguments, law = self.arguments(), self._law_columns(numbering)

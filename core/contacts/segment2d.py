@@ -22,6 +22,8 @@ from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
 from .geometry_kinds import SEGMENT, are
 from .normal2d import act, is_sleeping
+from .pair_table import no_pair, pair
+from .polygon2d import ANGULAR
 from .sliding2d import act_sliding
 
 QUARTER_TURN = 0.5 * np.pi
@@ -187,3 +189,5 @@ def refuse_point_on_line(name: str, line: str, disk_radius: float, line_radius: 
 
 
 are(SEGMENT, bristle_disk_on_segment_kernel, disk_on_segment_kernel, sliding_disk_on_segment_kernel)
+pair(DiskOnSegment2D, segment=Segment2D, disk=Disk2D)
+no_pair(ANGULAR, Segment2D, "make the segment a thin box, or let them pass through each other (pass_through)")

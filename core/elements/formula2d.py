@@ -22,6 +22,8 @@ from .base import Form, Numbering
 
 MARKER_COLUMNS = 5
 """Of each marker in the table of parameters: point (2), angle, its cosine and sine."""
+FormKey = tuple[str, tuple[Callable[..., Any], ...]]
+"""Kind of a kernel, and the formulas that it is made of."""
 NO_NUMBERS: Mapping[str, float] = MappingProxyType({})
 
 

@@ -37,6 +37,8 @@ class Joint3D(JointElement):
     across: ClassVar[Sequence[tuple[Axis, Axis]]] = ()
     """Pairs of axes that must stand across each other: where they start parallel, nothing says which way to turn."""
 
+    symbol: ClassVar[str] = "ball"
+    """What it looks like: "ball", "pin", "cross", "block", "sleeve", "slider" or "bead" on a bar, "pane", "rod"."""
     turns: ClassVar[bool] = False
     """Whether it turns about the z axis of its markers: channels `angle`, whole turns counted, `angular_velocity`."""
     slides: ClassVar[bool] = False

@@ -50,6 +50,7 @@ class Revolute3D(TurningJoint3D):
     """Hinge: the points and the z axes of both markers are one (5 rows)."""
 
     type: Literal["Revolute3D"] = "Revolute3D"
+    symbol: ClassVar[str] = "pin"
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
     def primitives(self) -> Sequence[Primitive]:
@@ -64,6 +65,7 @@ class Universal3D(Joint3D):
     """
 
     type: Literal["Universal3D"] = "Universal3D"
+    symbol: ClassVar[str] = "cross"
     across: ClassVar[Sequence[tuple[Axis, Axis]]] = (("x", "y"),)
 
     def coordinates(self) -> Sequence[JointCoordinate]:
@@ -125,6 +127,7 @@ class Fixed3D(Joint3D):
     """Weld: points and axes of both markers are one (6 rows)."""
 
     type: Literal["Fixed3D"] = "Fixed3D"
+    symbol: ClassVar[str] = "block"
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _ALL
 
     def primitives(self) -> Sequence[Primitive]:
@@ -135,6 +138,7 @@ class Cylindrical3D(TurningJoint3D):
     """The z axes of both markers are one line, along which and about which b moves (4 rows)."""
 
     type: Literal["Cylindrical3D"] = "Cylindrical3D"
+    symbol: ClassVar[str] = "sleeve"
     slides: ClassVar[bool] = True
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
@@ -146,6 +150,7 @@ class Prismatic3D(Joint3D):
     """Slider: b moves along the z axis of marker a without turning (5 rows)."""
 
     type: Literal["Prismatic3D"] = "Prismatic3D"
+    symbol: ClassVar[str] = "slider"
     slides: ClassVar[bool] = True
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _ALL
 
@@ -158,6 +163,7 @@ class Planar3D(TurningJoint3D):
     the x and y axes of marker a, and its angle."""
 
     type: Literal["Planar3D"] = "Planar3D"
+    symbol: ClassVar[str] = "pane"
     aligned: ClassVar[Sequence[tuple[Axis, Axis]]] = _Z
 
     def coordinates(self) -> Sequence[JointCoordinate]:
@@ -176,6 +182,7 @@ class PointOnLine3D(Joint3D):
     """The point of marker b is on the z axis of marker a (2 rows)."""
 
     type: Literal["PointOnLine3D"] = "PointOnLine3D"
+    symbol: ClassVar[str] = "bead"
 
     def primitives(self) -> Sequence[Primitive]:
         return _ON_AXIS
@@ -185,6 +192,7 @@ class PointOnPlane3D(Joint3D):
     """The point of marker b is in the xy plane of marker a (1 row)."""
 
     type: Literal["PointOnPlane3D"] = "PointOnPlane3D"
+    symbol: ClassVar[str] = "pane"
 
     def primitives(self) -> Sequence[Primitive]:
         return (Dot2("z"),)
@@ -211,6 +219,7 @@ class Distance3D(_Driven):
     """Massless rod: the points of both markers are `length` apart (1 row). A time function drives the length."""
 
     type: Literal["Distance3D"] = "Distance3D"
+    symbol: ClassVar[str] = "rod"
     length: float | Signal
     """m, positive."""
 
@@ -233,6 +242,7 @@ class RevoluteSpherical3D(_Driven):
     rod with a hinge about z at a and a ball joint at b (2 rows)."""
 
     type: Literal["RevoluteSpherical3D"] = "RevoluteSpherical3D"
+    symbol: ClassVar[str] = "rod"
     length: float
     """m, positive."""
 
@@ -253,6 +263,7 @@ class AngleDriver3D(_Driven):
     """
 
     type: Literal["AngleDriver3D"] = "AngleDriver3D"
+    symbol: ClassVar[str] = "pin"
     angle: Signal
     """rad over time; its value at the start says whole turns for all that counts turns about the same axis."""
 
@@ -269,6 +280,7 @@ class PositionDriver3D(_Driven):
     a Cylindrical3D with the same markers."""
 
     type: Literal["PositionDriver3D"] = "PositionDriver3D"
+    symbol: ClassVar[str] = "none"
     position: Signal
     """m over time."""
 

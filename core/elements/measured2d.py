@@ -4,15 +4,18 @@ The kernel is made of the measure's formula. Elements differ in what it does wit
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from .base import Form, PairElement2D
-from .formula2d import Arguments, derivatives, form_ahead
+from .formula2d import Arguments, FormKey, derivatives, form_ahead
 from .measures2d import MEASURES, Measure
 
 
 class MeasuredElement2D(PairElement2D):
     """Base of elements between markers `a` and `b` that act on a `measure` of them."""
+
+    form_kind: ClassVar[str]
+    """Of its kernel in the library."""
 
     measure: Measure = "angle"
     """What it moves: the angle of a joint, the slide along a's first axis, or the distance of the markers."""
@@ -21,16 +24,18 @@ class MeasuredElement2D(PairElement2D):
         """What its formula takes."""
         return Arguments.of(self, ("a", "b"))
 
-    def form_of(
-        self, kind: str, kernel: Callable[[str, Arguments], Any], rows: int = 0, by_rates: bool = False
-    ) -> Form:
-        """Its form: from the library under the name `kind`, else with `kernel` of measure and arguments.
+    def form_key(self) -> FormKey:
+        """Kind and formulas of its kernel, by which the library of machine code has it."""
+        return self.form_kind, (MEASURES[self.measure],)
+
+    def form_of(self, kernel: Callable[[str, Arguments], Any], rows: int = 0, by_rates: bool = False) -> Form:
+        """Its form: from the library, else with `kernel` of measure and arguments.
 
         `rows` is the number of constraints. The tangent has the second derivatives of the measure, and with `by_rates`,
         where the force changes with the measure and its rate, products of its gradient with that of the rate.
         """
         formula, arguments = MEASURES[self.measure], self.arguments()
-        ahead = form_ahead(kind, (formula,), arguments)
+        ahead = form_ahead(*self.form_key(), arguments)
         if ahead is not None:
             return ahead
         found = derivatives(formula, arguments)

@@ -18,7 +18,7 @@ from ..model.base import Positive
 from ..model.markers import Marker2D
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import Form, Numbering, PairElement2D, Row
-from .formula2d import MARKER_COLUMNS, Arguments, caller_of, form_ahead
+from .formula2d import MARKER_COLUMNS, Arguments, FormKey, caller_of, form_ahead
 from .geometry2d import add_hessian, add_product, along
 from .measures2d import MEASURES, Measure
 from .pid_law import PIDLaw
@@ -147,8 +147,12 @@ class PIDController2D(PIDLaw, PairElement2D):
         """What these take, by name."""
         return ENDS
 
+    def form_key(self) -> FormKey:
+        """Kind and formulas of its kernel, by which the library of machine code has it."""
+        return KIND, self.formulas()
+
     def form(self) -> Form:
-        ahead = form_ahead(KIND, self.formulas(), ENDS)
+        ahead = form_ahead(*self.form_key(), ENDS)
         if ahead is not None:
             return ahead
         rows = (*range(WIDTH), STATE)

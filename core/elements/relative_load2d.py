@@ -5,7 +5,7 @@ The bodies take it with opposite signs: r -= f(t) dx/dq for the measure x(a, b).
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -60,6 +60,7 @@ class RelativeLoad2D(ForceElement, MeasuredElement2D):
     """
 
     type: Literal["RelativeLoad2D"] = "RelativeLoad2D"
+    form_kind: ClassVar[str] = KIND
 
     load: Signal
     """Over time, N m or N; positive makes the measure grow."""
@@ -74,7 +75,7 @@ class RelativeLoad2D(ForceElement, MeasuredElement2D):
         return self
 
     def form(self) -> Form:
-        return self.form_of(KIND, _kernel)
+        return self.form_of(_kernel)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

@@ -5,7 +5,7 @@ Phi = x(a, b) - f(t).
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -62,6 +62,7 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
     """
 
     type: Literal["RelativeMotor2D"] = "RelativeMotor2D"
+    form_kind: ClassVar[str] = KIND
 
     motion: Signal
     """What it follows, rad or m over s. The bodies must start where it says; an input leads them there."""
@@ -78,7 +79,7 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
         return self
 
     def form(self) -> Form:
-        return self.form_of(KIND, _kernel, rows=1)
+        return self.form_of(_kernel, rows=1)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

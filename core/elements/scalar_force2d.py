@@ -9,7 +9,16 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.markers import Marker2D
 from .base import ForceElement, Form, Numbering, Row
-from .formula2d import MARKER_COLUMNS, Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
+from .formula2d import (
+    MARKER_COLUMNS,
+    Arguments,
+    FormKey,
+    argument_names,
+    caller_of,
+    derivatives,
+    form_ahead,
+    plain_function,
+)
 from .geometry2d import add_hessian, add_product, along
 
 Function = Callable[..., Any]
@@ -136,6 +145,10 @@ class ScalarForce2D(ForceElement):
     def arguments(self) -> Arguments:
         """What its formulas take."""
         return Arguments.of(self, self.formula.names)
+
+    def form_key(self) -> FormKey:
+        """Kind and formulas of its kernel, by which the library of machine code has it."""
+        return KIND, self.formula.formulas
 
     def form(self) -> Form:
         return self.formula.form(self.arguments())

@@ -9,7 +9,16 @@ from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from ..model.markers import Marker2D
 from .base import Form, JointElement, Numbering, Row
-from .formula2d import NO_NUMBERS, Arguments, argument_names, caller_of, derivatives, form_ahead, plain_function
+from .formula2d import (
+    NO_NUMBERS,
+    Arguments,
+    FormKey,
+    argument_names,
+    caller_of,
+    derivatives,
+    form_ahead,
+    plain_function,
+)
 from .geometry2d import constrain
 
 KIND = "scalar_joint2d"
@@ -91,6 +100,10 @@ class ScalarJoint2D(JointElement):
     def arguments(self) -> Arguments:
         """What its formula takes."""
         return Arguments.of(self, self.formula.names, dict.fromkeys(self.derived, 0.0))
+
+    def form_key(self) -> FormKey:
+        """Kind and formulas of its kernel, by which the library of machine code has it."""
+        return KIND, (self.formula.formula,)
 
     def form(self) -> Form:
         return self.formula.form(self.arguments())

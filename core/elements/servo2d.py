@@ -8,7 +8,7 @@ A servo that saturates gives F (1 + (F/L)^8)^(-1/8) instead, L its largest force
 """
 
 from functools import cache
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
@@ -75,6 +75,7 @@ class Servo2D(ServoLaw, MeasuredElement2D):
     """
 
     type: Literal["Servo2D"] = "Servo2D"
+    form_kind: ClassVar[str] = KIND
 
     target: Signal
     """rad or m over s; with `of_rate` rad/s or m/s."""
@@ -88,7 +89,7 @@ class Servo2D(ServoLaw, MeasuredElement2D):
     """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
     def form(self) -> Form:
-        return self.form_of(KIND, _kernel, by_rates=True)
+        return self.form_of(_kernel, by_rates=True)
 
     def row(self, numbering: Numbering) -> Row:
         arguments = self.arguments()

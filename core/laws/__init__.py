@@ -63,16 +63,4 @@ __all__ = [
     "law_address",
 ]
 
-__getattr__, __dir__ = late_names(
-    __name__,
-    {
-        ".hertz": "Hertz",
-        ".hunt_crossley": (
-            "CarvalhoMartins Flores Gonthier HerbertMcWhannell HuGuo HuntCrossley LankaraniNikravesh LeeWang "
-            "ZhiyingQishao"
-        ),
-        ".kelvin_voigt": "KelvinVoigt",
-        ".own": "force_formula",
-        ".viscoelastic": "KuwabaraKono Tsuji",
-    },
-)
+__getattr__, __dir__, _ = late_names(__name__)

@@ -14,11 +14,12 @@ import numpy as np
 from ...core.assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ...core.elements import Joint3D, Spherical3D
 from ...core.elements.dot1_3d import Dot1
-from ...core.elements.dot2_3d import Dot2
+from ...core.elements.dot2_3d import AT_POINT, Dot2
 from ...core.elements.point3d import Point
 from ...core.elements.primitive3d import AXIS
 from ...core.elements.spatial_body import start_of_marker
 from ...core.errors import TlismniError
+from ...core.model.words import an
 from ...core.multibody_model import Model
 from ...core.simulation.simulation import Simulation
 from ..errors import NotTranslatable
@@ -168,22 +169,31 @@ def leaves_out(record: object, row: int, model: Model) -> bool:
 def rows_of(record: Joint3D) -> Sequence[HeldRow]:
     """The equations of a joint in their order. Raises NotTranslatable for primitives that exudyn does not hold."""
     rows: list[HeldRow] = []
+    what = "" if type(record).parts is Joint3D.parts else "equations of its own"
     for primitive in record.primitives():
         if isinstance(primitive, Point):
             rows += [Place(k) for k in range(3)]
-        elif isinstance(primitive, Dot2):
+        elif isinstance(primitive, Dot2) and primitive.distance == AT_POINT:
             rows.append(Along(AXIS[primitive.axis]))
-        elif isinstance(primitive, Dot1):
+        elif isinstance(primitive, Dot1) and primitive.value == 0.0 and primitive.axis_a != primitive.axis_b:
             rows.append(Turn(AXIS[primitive.axis_a], AXIS[primitive.axis_b]))
         else:
-            raise NotTranslatable(
-                f"'{record.name}' has a redundant equation and holds a {type(primitive).__name__}, of which exudyn's "
-                "generic joint has no axis: let a hinge (Revolute3D) own the redundant equation, last in the loop"
-            )
+            what = an(type(primitive).__name__)
+    turns = [row for row in rows if isinstance(row, Turn)]
+    if len({frozenset((turn.of_a, turn.of_b)) for turn in turns}) < len(turns):
+        what = "two turns about one axis"
+    elif len(turns) == 2 and turns[0].of_a != turns[1].of_a:
+        what = "axes across each other in two pairs"
+    if what:
+        raise NotTranslatable(
+            f"'{record.name}' is {an(type(record).__name__)} and holds {what}, of which exudyn's generic joint has no "
+            "axis; where another joint repeats it, let a hinge (Revolute3D) own the redundant equation, last in the "
+            "loop"
+        )
     return rows
 
 
-def less(record: Joint3D, left_out: frozenset[int], model: Model) -> tuple[list[int], np.ndarray]:
+def held_axes(record: Joint3D, left_out: frozenset[int], model: Model) -> tuple[list[int], np.ndarray]:
     """Axes that exudyn's generic joint holds, three ways and three turns, and the axes (3, 3) of its frames in those of
     the markers, as columns, for a joint without the equations `left_out`.
 

@@ -16,17 +16,18 @@ from .laid_contacts import Laid
 
 Translator = Callable[[Any, "Build"], None]
 _TRANSLATORS: dict[type, Translator] = {}
+_OF_HEIRS: dict[type, Translator] = {}
 _ROUTES: dict[type, str] = {}
 _FREES: set[type] = set()
 T = TypeVar("T", bound=Translator)
 
 
-def translates(*records: type) -> Callable[[T], T]:
-    """Decorator: the function translates records of these types."""
+def translates(*records: type, heirs: bool = False) -> Callable[[T], T]:
+    """Decorator: the function translates records of these types; of heirs too, if it says so, of which nothing else is
+    known."""
 
     def register(function: T) -> T:
-        for record in records:
-            _TRANSLATORS[record] = function
+        (_OF_HEIRS if heirs else _TRANSLATORS).update(dict.fromkeys(records, function))
         return function
 
     return register
@@ -39,7 +40,15 @@ def frees(*records: type) -> None:
 
 def can_free(record: Any) -> bool:
     """Whether the translator of `record` leaves out redundant equations."""
-    return type(record) in _FREES
+    return type(record) in _FREES or (_heir_of(record) in _FREES and not _is_known(record))
+
+
+def _is_known(record: Any) -> bool:
+    return type(record) in _TRANSLATORS or type(record) in _ROUTES
+
+
+def _heir_of(record: Any) -> type | None:
+    return next((base for base in type(record).__mro__ if base in _OF_HEIRS), None)
 
 
 def no_equal(route: str, *records: type) -> None:
@@ -62,7 +71,8 @@ def translate(record: Any, build: "Build") -> None:
         raise NotTranslatable(
             f"equation {rows} of '{record.name}' is redundant, and exudyn, whose {type(record).__name__} keeps all of "
             "them, has a singular matrix then. Joints that can leave equations out there are "
-            f"{sorted(t.__name__ for t in _FREES)}; make this joint hold less, or put one of those in the loop"
+            f"{sorted(t.__name__ for t in _FREES & _TRANSLATORS.keys())}, and those in space that are made of points "
+            "and axes across each other, such as Revolute3D; make this joint hold less, or put one of those in the loop"
         )
     translator(record, build)
 
@@ -75,7 +85,10 @@ def find_translator(record: Any) -> Translator:
     what = f"'{getattr(record, 'name', record)}' is a {type(record).__name__}"
     if type(record) in _ROUTES:
         raise NotTranslatable(f"{what}, of which exudyn has no equal. The nearest route: {_ROUTES[type(record)]}")
-    known = sorted(t.__name__ for t in _TRANSLATORS)
+    base = _heir_of(record)
+    if base is not None:
+        return _OF_HEIRS[base]
+    known = sorted(t.__name__ for t in (*_TRANSLATORS, *_OF_HEIRS))
     raise NotTranslatable(f"{what}, for which no translation to exudyn is written; there are translations of {known}")
 
 

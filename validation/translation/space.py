@@ -11,21 +11,13 @@ from ...core.contacts.on_cable3d import CableOnHalfSpace3D, SphereOnCable3D
 from ...core.contacts.on_mesh3d import SphereOnMesh3D
 from ...core.contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D, SphereInSphere3D
 from ...core.elements import (
-    Cylindrical3D,
-    Fixed3D,
     Joint3D,
-    Planar3D,
     PointMass3D,
-    PointOnLine3D,
-    PointOnPlane3D,
-    Prismatic3D,
-    Revolute3D,
     RigidBody3D,
     RollingDisk3D,
     RollingSphere3D,
     Screw3D,
     Spherical3D,
-    Universal3D,
 )
 from ...core.elements.joint_coordinates3d import JointAngle, JointPosition
 from ...core.model.angular_velocity import AngularVelocity
@@ -36,25 +28,14 @@ from ...core.model.frame3d import Frame3D
 from ...core.model.markers import GROUND, Marker3D
 from ..errors import NotTranslatable
 from .bodies import node_columns
-from .redundant import less
+from .redundant import held_axes
 from .registry import BodyItems, Build, Derived, frees, no_equal, translates
 
 Work = Callable[[np.ndarray], np.ndarray]
 
 no_equal("a sphere on a ground plane with large friction", RollingSphere3D)
 
-CONSTRAINED: dict[type[Joint3D], list[int]] = {
-    Fixed3D: [1, 1, 1, 1, 1, 1],
-    Revolute3D: [1, 1, 1, 1, 1, 0],
-    Cylindrical3D: [1, 1, 0, 1, 1, 0],
-    Prismatic3D: [1, 1, 0, 1, 1, 1],
-    Planar3D: [0, 0, 1, 1, 1, 0],
-    Universal3D: [1, 1, 1, 1, 0, 0],
-    PointOnLine3D: [1, 1, 0, 0, 0, 0],
-    PointOnPlane3D: [0, 0, 1, 0, 0, 0],
-}
-"""Axes that ObjectJointGeneric holds: three translations and three rotations in the frame of marker a."""
-frees(*CONSTRAINED, Spherical3D)
+frees(Joint3D, Spherical3D)
 YZ = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Columns: our z, x, y axes as x, y, z. exudyn's universal joint holds y of a across z of b, ours x across y."""
 
@@ -172,12 +153,13 @@ def spherical(record: Spherical3D, build: Build) -> None:
     build.add("ObjectJointSpherical", markerNumbers=markers, constrainedAxes=held)
 
 
-@translates(*CONSTRAINED)
+@translates(Joint3D, heirs=True)
 def generic(record: Joint3D, build: Build) -> None:
-    """ObjectJointGeneric; its multipliers of rotations are no torques, so that only the motion is compared."""
-    constrained, order = CONSTRAINED[type(record)], YZ if isinstance(record, Universal3D) else np.eye(3)
-    if record.name in build.redundant:
-        constrained, order = less(record, build.redundant[record.name], build.model)
+    """ObjectJointGeneric, a user's own joints of such primitives too; its multipliers of rotations are no torques, so
+    that only the motion is compared."""
+    left_out = build.redundant.get(record.name, frozenset())
+    constrained, order = held_axes(record, left_out, build.model)
+    if left_out:
         build.notes.append(f"{record.name}: exudyn's holds {sum(constrained)} axes, without the redundant equations")
     markers = [placed(marker, build, record.name, marker.axes() @ order) for marker in (record.a, record.b)]
     build.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=constrained)

@@ -2,14 +2,13 @@
 
 import math
 import re
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
-from ...core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
+from ...core.contacts.contact2d import Contact2D, HalfPlane2D
 from ...core.contacts.coordinate_contact import CoordinateContact
-from ...core.contacts.disk_on_cable import DiskOnCable2D
 from ...core.contacts.disk_on_line import DiskOnLine2D
-from ...core.contacts.segment2d import DiskOnSegment2D
 from ...core.elements import (
     AppliedForce2D,
     AppliedTorque2D,
@@ -30,6 +29,7 @@ from ...core.elements import (
 from ...core.model.markers import GROUND
 from ...core.model.signals import Constant, InputSignal
 from . import symbols
+from .contact_shapes import laid, shapes_of, show
 from .places import Places
 from .shapes import GROUND as GROUND_COLOUR
 from .shapes import INK, PORT, TOUCH, Circle, Drawing, Label, Path, Point, moved, turned
@@ -223,43 +223,29 @@ def _side(sign: float, axis: Point) -> str:
 
 
 @draw_interaction.register
-def _(element: DiskOnHalfPlane2D, drawing: Drawing, places: Places) -> None:
-    foot = places.at(element.plane.marker)
-    along = turned((1.0, 0.0), places.direction(element.plane.marker))
-    disk = places.at(element.disk.marker)
-    reach = (disk[0] - foot[0]) * along[0] + (disk[1] - foot[1]) * along[1]
-    ends = sorted((0.0, reach))
+def _(element: Contact2D, drawing: Drawing, places: Places) -> None:
+    shapes = shapes_of(element)
+    for shape in shapes:
+        if isinstance(shape, HalfPlane2D):
+            _plane(shape, [places.at(other.marker) for other in shapes if other is not shape], drawing, places)
+        else:
+            _shape(shape, drawing, places)
+
+
+def _plane(plane: HalfPlane2D, others: Sequence[Point], drawing: Drawing, places: Places) -> None:
+    """Its line, as far as what touches it."""
+    foot, along = places.at(plane.marker), turned((1.0, 0.0), places.direction(plane.marker))
+    ends = [0.0, *((x - foot[0]) * along[0] + (y - foot[1]) * along[1] for x, y in others)]
     half = 0.13 * drawing.size
     # behind the line, on the right-hand side of its direction: the half-plane's normal is to the left
-    symbols.wall(drawing, moved(foot, along, ends[0] - half), moved(foot, along, ends[1] + half), TOUCH)
-    _disk(element.disk, drawing, places)
-
-
-@draw_interaction.register
-def _(element: DiskOnDisk2D, drawing: Drawing, places: Places) -> None:
-    _disk(element.a, drawing, places)
-    _disk(element.b, drawing, places)
-
-
-@draw_interaction.register
-def _(element: DiskOnSegment2D, drawing: Drawing, places: Places) -> None:
-    start = places.at(element.segment.marker)
-    along = turned((1.0, 0.0), places.direction(element.segment.marker))
-    width = max(0.8, 200.0 * element.segment.radius / drawing.size)
-    drawing.shapes.append(Path((start, moved(start, along, element.segment.length)), TOUCH, width=width))
-    _disk(element.disk, drawing, places)
+    symbols.wall(drawing, moved(foot, along, min(ends) - half), moved(foot, along, max(ends) + half), TOUCH)
 
 
 @draw_interaction.register
 def _(element: DiskOnLine2D, drawing: Drawing, places: Places) -> None:
     nodes = [places.at(node) for node in element.line.nodes]
     drawing.shapes.append(Path(nodes, TOUCH, width=max(0.6, 200.0 * element.line.radius / drawing.size)))
-    _disk(element.disk, drawing, places)
-
-
-@draw_interaction.register
-def _(element: DiskOnCable2D, drawing: Drawing, places: Places) -> None:
-    _disk(element.disk, drawing, places)
+    _shape(element.disk, drawing, places)
 
 
 @draw_interaction.register
@@ -280,9 +266,7 @@ def _(element: CoordinateContact, drawing: Drawing, places: Places) -> None:
         symbols.wall(drawing, (limit, s), (limit, -s), TOUCH)
 
 
-def _disk(disk: Disk2D, drawing: Drawing, places: Places) -> None:
-    at = places.at(disk.marker)
-    if disk.radius > 0.004 * drawing.size:
-        drawing.shapes.append(Circle(at, disk.radius, TOUCH, None, 0.5))
-    else:
-        drawing.shapes.append(Circle(at, 0.008 * drawing.size, TOUCH, TOUCH, 0.2))
+def _shape(shape: Any, drawing: Drawing, places: Places) -> None:
+    own = Drawing(drawing.size)
+    show(shape, own)
+    drawing.shapes += laid(own.shapes, places.at(shape.marker), places.direction(shape.marker))

@@ -1,41 +1,28 @@
 """Joints, forces and planes in space as solids and links."""
 
+from collections.abc import Callable, Mapping
 from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
-from ...core.contacts.contact3d import HalfSpace3D, SphereOnHalfSpace3D
-from ...core.contacts.on_cable3d import CableOnHalfSpace3D
-from ...core.contacts.round3d import SmoothOnHalfSpace3D
+from ...core.contacts.contact3d import Contact3D, HalfSpace3D
 from ...core.contacts.stop3d import DistanceStop3D, Rope3D
 from ...core.elements import (
-    AngleDriver3D,
     AxialSpring3D,
     Bushing3D,
-    ConstantVelocity3D,
-    Cylindrical3D,
-    Distance3D,
-    Fixed3D,
     Gear3D,
+    Joint3D,
     PIDController3D,
-    Planar3D,
-    PointOnLine3D,
-    PointOnPlane3D,
-    Prismatic3D,
     RackAndPinion3D,
     RelativeLoad3D,
-    Revolute3D,
-    RevoluteSpherical3D,
     RollingDisk3D,
     RollingSphere3D,
     Screw3D,
     Servo3D,
-    Spherical3D,
     SpringDamper3D,
     TableSpring3D,
     TorsionSpring3D,
-    Universal3D,
 )
 from ...core.elements.cable_clamp3d import CableClamp3D
 from ...core.model.markers import GROUND, Marker3D
@@ -58,22 +45,26 @@ def place(element: Any, stage: Stage3D) -> None:
 
 
 @place.register
-def _(element: Spherical3D | ConstantVelocity3D, stage: Stage3D) -> None:
+def _(element: Joint3D, stage: Stage3D) -> None:
+    """As its class says that it looks like."""
+    if element.symbol in SYMBOLS:
+        SYMBOLS[element.symbol](element, stage)
+
+
+def _ball(element: Joint3D, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
     _support(element, stage)
 
 
-@place.register
-def _(element: Revolute3D | AngleDriver3D, stage: Stage3D) -> None:
+def _pin(element: Joint3D, stage: Stage3D) -> None:
     u = stage.size
     stage.solid(element.b, meshes.cylinder(), (PIN * u, PIN * u, 0.08 * u), JOINT)
     _support(element, stage)
 
 
-@place.register
-def _(element: Universal3D, stage: Stage3D) -> None:
+def _cross(element: Joint3D, stage: Stage3D) -> None:
+    """The x axis of a, the y axis of b."""
     u = 0.6 * PIN * stage.size
-    # the cross: the x axis of a, the y axis of b
     for marker, along in ((element.a, (1.0, 0.0, 0.0)), (element.b, (0.0, 1.0, 0.0))):
         way = 0.045 * stage.size * (marker.axes() @ np.array(along))
         ends = [np.array(marker.point) + sign * way for sign in (-1.0, 1.0)]
@@ -82,36 +73,37 @@ def _(element: Universal3D, stage: Stage3D) -> None:
     _support(element, stage)
 
 
-@place.register
-def _(element: Fixed3D, stage: Stage3D) -> None:
+def _block(element: Joint3D, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.box(), (1.2 * BLOCK * stage.size,) * 3, JOINT)
     _support(element, stage)
 
 
-@place.register
-def _(element: CableClamp3D, stage: Stage3D) -> None:
-    colour = BASE if element.marker.body == GROUND else JOINT
-    stage.solid(element.marker, meshes.box(), (BLOCK * stage.size,) * 3, colour)
-
-
-@place.register
-def _(element: Cylindrical3D | Prismatic3D | Screw3D | PointOnLine3D, stage: Stage3D) -> None:
-    """A bar along the z axis of a, as long as its way, and a sleeve on b."""
+def _bar(element: Joint3D | Screw3D, stage: Stage3D) -> None:
+    """Along the z axis of a, as long as its way."""
     u = stage.size
     along = np.sum((stage.at(element.b) - stage.at(element.a)) * stage.axes(element.a)[:, :, 2], axis=1)
     low, high = min(0.0, float(along.min())) - MARGIN * u, max(0.0, float(along.max())) + MARGIN * u
     radius = BAR * u
     stage.solid(element.a, meshes.cylinder(), (radius, radius, high - low), BASE, shift=(0.0, 0.0, 0.5 * (low + high)))
-    if isinstance(element, Prismatic3D):
-        stage.solid(element.b, meshes.box(), (2.0 * BLOCK * u, 2.0 * BLOCK * u, 3.0 * BLOCK * u), JOINT)
-    elif isinstance(element, PointOnLine3D):
-        stage.solid(element.b, meshes.ball(), (KNUCKLE * u,) * 3, JOINT)
-    else:
-        stage.solid(element.b, meshes.cylinder(), (BLOCK * u, BLOCK * u, 3.0 * BLOCK * u), JOINT)
 
 
-@place.register
-def _(element: Planar3D | PointOnPlane3D, stage: Stage3D) -> None:
+def _sleeve(element: Joint3D | Screw3D, stage: Stage3D) -> None:
+    _bar(element, stage)
+    stage.solid(element.b, meshes.cylinder(), (BLOCK * stage.size, BLOCK * stage.size, 3.0 * BLOCK * stage.size), JOINT)
+
+
+def _slider(element: Joint3D, stage: Stage3D) -> None:
+    _bar(element, stage)
+    u = BLOCK * stage.size
+    stage.solid(element.b, meshes.box(), (2.0 * u, 2.0 * u, 3.0 * u), JOINT)
+
+
+def _bead(element: Joint3D, stage: Stage3D) -> None:
+    _bar(element, stage)
+    stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
+
+
+def _on_pane(element: Joint3D, stage: Stage3D) -> None:
     """A pane that shines through, where b moves on it."""
     away = stage.at(element.b) - stage.at(element.a)
     local = np.einsum("fi,fij->fj", away, stage.axes(element.a))[:, :2]
@@ -120,12 +112,28 @@ def _(element: Planar3D | PointOnPlane3D, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
 
 
-@place.register
-def _(element: Distance3D | RevoluteSpherical3D, stage: Stage3D) -> None:
+def _rod(element: Joint3D, stage: Stage3D) -> None:
     stage.link(element.name, "rod", element.a, element.b)
     for marker in (element.a, element.b):
         stage.solid(marker, meshes.ball(), (0.7 * KNUCKLE * stage.size,) * 3, JOINT)
     _support(element, stage)
+
+
+SYMBOLS: Mapping[str, Callable[[Joint3D, Stage3D], None]] = {
+    "ball": _ball, "pin": _pin, "cross": _cross, "block": _block, "sleeve": _sleeve, "slider": _slider, "bead": _bead,
+    "pane": _on_pane, "rod": _rod,
+}  # fmt: skip
+
+
+@place.register
+def _(element: Screw3D, stage: Stage3D) -> None:
+    _sleeve(element, stage)
+
+
+@place.register
+def _(element: CableClamp3D, stage: Stage3D) -> None:
+    colour = BASE if element.marker.body == GROUND else JOINT
+    stage.solid(element.marker, meshes.box(), (BLOCK * stage.size,) * 3, colour)
 
 
 @place.register
@@ -206,8 +214,11 @@ def _(element: Rope3D | DistanceStop3D, stage: Stage3D) -> None:
 
 
 @place.register
-def _(element: SphereOnHalfSpace3D | SmoothOnHalfSpace3D | CableOnHalfSpace3D, stage: Stage3D) -> None:
-    _ground_under(stage, element.plane.marker)
+def _(element: Contact3D, stage: Stage3D) -> None:
+    """The planes: what touches them is drawn with its body (`shapes.py`)."""
+    for shape in element.shapes():
+        if isinstance(shape, HalfSpace3D):
+            place(shape, stage)
 
 
 @place.register

@@ -5,14 +5,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...core.contacts.ball_on_round3d import SphereOnCylinder3D, SphereOnRing3D, SphereOnSmooth3D
 from ...core.contacts.contact3d import Contact3D, Sphere3D
 from ...core.contacts.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
-from ...core.contacts.edges3d import EdgesOnEdges3D
 from ...core.contacts.group3d import ContactGroup3D
 from ...core.contacts.mesh3d import TriangleMesh3D
-from ...core.contacts.on_mesh3d import SphereOnMesh3D
-from ...core.contacts.round3d import CapsuleOnCapsule3D, SmoothOnHalfSpace3D
 from ...core.contacts.support3d import SmoothShape3D
 from ...core.elements import RigidBody3D, SpatialFrame
 from ...core.model.attitude import parameters_of_matrix
@@ -115,20 +111,8 @@ def _single(model: Model) -> list[Contact3D]:
 
 def _single_shapes(model: Model) -> list[Cornered3D | SmoothShape3D]:
     """Their shapes other than balls, each once."""
-    found: list[Cornered3D | SmoothShape3D] = []
-    for contact in _single(model):
-        if isinstance(contact, SmoothOnHalfSpace3D):
-            found.append(contact.shape)
-        elif isinstance(contact, SphereOnSmooth3D | SphereOnCylinder3D):
-            found.append(contact.shape)
-        elif isinstance(contact, SphereOnRing3D):
-            found.append(contact.ring)
-        elif isinstance(contact, SphereOnMesh3D):
-            found.append(contact.mesh)
-        elif isinstance(contact, EdgesOnEdges3D):
-            found += [contact.a, contact.b]
-        elif isinstance(contact, CapsuleOnCapsule3D):
-            found += [shape for shape in (contact.a, contact.b) if isinstance(shape, Capsule3D)]
+    shapes = [shape for contact in _single(model) for shape in contact.shapes()]
+    found = [shape for shape in shapes if isinstance(shape, Cornered3D | SmoothShape3D)]
     return [shape for k, shape in enumerate(found) if shape not in found[:k]]
 
 

@@ -44,14 +44,4 @@ __all__ = [
     "friction_address",
 ]
 
-__getattr__, __dir__ = late_names(
-    __name__,
-    {
-        ".ambrosio": "AmbrosioFriction",
-        ".brown_mcphee": "BrownMcPheeFriction",
-        ".step": "StepFriction",
-        ".tanh": "TanhFriction",
-        ".threlfall": "ThrelfallFriction",
-        ".turning": "TurningFriction",
-    },
-)
+__getattr__, __dir__, _ = late_names(__name__)
