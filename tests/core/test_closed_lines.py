@@ -188,6 +188,7 @@ def test_cam_of_many_turns_is_the_eccentric_circle():
     assert max(residuals(result)) < 1e-9
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "law, friction",
     [

@@ -269,6 +269,7 @@ def meets_its_circle(force, rate, limit):
     assert np.abs((force * rate).sum(axis=0) + size * speed).max() < 1e-8
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("turns", [False, True])
 def test_sweeps_meet_the_conditions_of_contact(seed, turns):
@@ -302,6 +303,7 @@ def test_sweeps_of_a_long_pile_need_conjugate_gradients():
     assert used < 4000
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("count", [3, 40])
 def test_overlaps_are_closed_by_the_least_motion(seed, count):

@@ -193,6 +193,7 @@ def test_constraints_hold_at_all_three_levels(tableau, scenario):
         assert max(residuals(result)) <= 1e-11
 
 
+@pytest.mark.sampled(1)
 @every_tableau
 def test_driven_constraint(tableau):
     """Bead on a rotating rod: r = r0 cosh(w t), the rod pushes with 2 m w r'."""

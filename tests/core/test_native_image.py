@@ -51,6 +51,7 @@ def jumping_model():
     )  # fmt: skip
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     "name, t_end",
     [
@@ -72,6 +73,7 @@ def test_the_same_bits_at_other_times(name, t_end):
     assert run.model.names(1) == tuple(channel.name for channel in sim.channels)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name, t_end",
     [

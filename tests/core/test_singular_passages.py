@@ -70,6 +70,7 @@ def passes(name, rtol, start, loops):
     assert np.abs(q[3 * (loops + 1) + 2 :: 3][:loops]).max() < 1e-9 or loops == 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", [*HIGH, *MEDIUM, *LOW])
 def test_sample_of_the_grid(name):
     tolerances = (1e-4, 1e-6, 1e-7) if name in LOW else (1e-4, 1e-7, 1e-9, 1e-11, 1e-12)

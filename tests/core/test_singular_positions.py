@@ -47,6 +47,7 @@ def test_singular_start_of_own_equations():
         simulate(system, 1.0)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "method, rtol, error, drift",
     [
@@ -73,6 +74,7 @@ def test_a02_passes_its_singular_positions(method, rtol, error, drift):
     assert residuals(result)[0] < 1e-10
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("method", ["ebdf", "irk"])
 @pytest.mark.parametrize("rate", [-5.5, -6.1, -7.3, 8.0, -9.7])
 def test_parallelogram_passes_at_any_phase(method, rate):

@@ -60,6 +60,7 @@ def test_rows_that_repeat_others(left_out):
     compare(of_scaled_rows(np.vstack([dense, repeated])), left_out + 1)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("exponent", range(3, 13))
 def test_nearly_dependent_rows(exponent):
     rng = np.random.default_rng(exponent)

@@ -34,6 +34,7 @@ def test_a_step_is_the_map_of_theory(algorithm, settings, weight):
     assert len(found.t) == steps + 1 and found.t[-1] == steps * h
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("algorithm", "settings", "order"),
     [

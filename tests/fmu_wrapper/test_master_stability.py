@@ -50,6 +50,7 @@ def test_the_mean_of_both_ends_keeps_the_energy_that_held_values_feed():
     assert abs(gains["newton"]) < 0.02
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("algorithm", "estimate"), [("gauss-seidel", "doubling"), ("newton", "doubling"), ("iterated", "iteration")]
 )

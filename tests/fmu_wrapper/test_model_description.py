@@ -387,6 +387,7 @@ SAMPLE = random.Random(core_digest()).sample(names(), (len(names()) + 1) // 2)
 """Half of the scenarios, others whenever the core changes."""
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("name", "version"),
     [

@@ -106,6 +106,7 @@ def test_free_body_over_two_periods_by_adams_formulas():
     assert np.abs(found - exact)[[2000, 4000]].max() < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "adams"])
 def test_spatial_slider_crank(method):
     result = run("spatial_slider_crank", [*CRANK], method, rtol=1e-12, atol=1e-14)

@@ -101,6 +101,7 @@ def test_error_falls_with_the_tolerance_through_all_impacts(method: str, options
 # ---- fixed steps
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "method, options, order, counts",
     [

@@ -184,6 +184,7 @@ def test_joints_and_forces_on_its_frame_follow_the_solver() -> None:
 HERTZ, TSUJI = Hertz(stiffness=2e4), Tsuji(stiffness=2e4, damping=0.1)
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize(
     ("law", "place"),

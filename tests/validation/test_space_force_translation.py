@@ -61,6 +61,7 @@ def ends(bodies):
     return {"a": bodies[0].marker_at(MIDDLE, AXIS), "b": bodies[1].marker_at(MIDDLE, AXIS)}
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize(("on_ground", "coupled"), [(False, True), (True, False)])
 def test_a_bushing_turns_by_more_than_a_radian(on_ground, coupled):
@@ -125,6 +126,7 @@ FORCES = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @needs_exudyn
 @pytest.mark.parametrize("force", FORCES)
 def test_forces_on_a_sleeve(force):

@@ -68,6 +68,7 @@ def test_another_restitution_on_a_heavy_mass_is_a_difference_of_the_models() -> 
     assert row(found, "approach speed").verdict == "agree"
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("restitution, verdict", [(0.7, "agree"), (0.74, "differ")])
 def test_whole_runs_of_a_heavy_mass_are_compared_with_stiffnesses_that_suit_it(
