@@ -63,6 +63,7 @@ def test_steps_that_converge_are_not_touched():
     assert result.stats["divided_steps"] == 0 and result.stats["steps"] == 1000
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("method", ["irk", "ebdf", "newmark", "generalized_alpha"])
 @pytest.mark.parametrize("seed", range(3))
 def test_parts_that_end_a_rounding_before_the_whole_step_end_it(method, seed):

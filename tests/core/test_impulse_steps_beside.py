@@ -130,6 +130,7 @@ def out_of_balance(sim, model, masses):
     return momentum - masses.sum() * np.array(model.gravity) * sim.t_internal - received
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("law", "loop"), [("linear", False), ("stiff", False), ("hertz", False), (None, True)])
 def test_momentum_is_that_of_gravity_and_walls(law, loop):
     """Without friction; each step adds what the impulses and forces of the walls say."""

@@ -142,6 +142,7 @@ def thrown(angle, spin=(3.0, -8.0, 5.0), marker=0.0, lower=False):
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("lower", [False, True], ids=["floor", "ball"])
 def test_turning_all_about_the_vertical_changes_nothing(lower):
     one = thrown(0.0, lower=lower)

@@ -48,6 +48,7 @@ def distance(first, second):
     return float(away.min())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("slope", [2.0, 0.5, 0.01, 0.0])
 def test_the_least_gap_is_the_distance(slope):
     """Exact for angles above the tilt, sine 0.033 here; below it to what the axes draw back."""

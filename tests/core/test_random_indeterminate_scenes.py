@@ -41,6 +41,7 @@ def test_spatial_scene_is_that_of_any_order_and_units(seed):
     _examine(scene(seed, 3))
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("seed", EDGES)
 def test_corner_passes_an_edge_alike_in_any_order_and_units(seed):
     drawn = scene(seed)
@@ -123,6 +124,7 @@ def test_reference_follows_the_laws_and_does_not_depend_on_its_compliance(seed, 
     assert np.all(friction <= problem.static.astype(float) * normal + 1e-9 * largest)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_reference_is_that_of_any_order_and_attitude(dimension):
     for seed in range(6):

@@ -98,6 +98,7 @@ def test_steps_of_any_size_pass():
     assert passed >= 24
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "mebdf", "irk"])
 def test_slider_crank_with_rod_as_long_as_its_crank(method):
     """Singular with the slider on the pin (theta = +-90 degrees): it must go through, x = 2 r cos(theta), and not stay

@@ -13,6 +13,7 @@ LOOSE = {"method": "irk", "rtol": 1e-8, "atol": 1e-11}
 """Where growth or a step control is looked at, not the coupling alone."""
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("algorithm", "weight"), [("jacobi", None), ("iterated", 1.0)])
 def test_stability_limit(algorithm, weight):
     """Inputs that lag (Jacobi) or lead (end) by h/2 feed energy in, more than the dampers take beyond a step."""

@@ -243,6 +243,7 @@ def compare_nominals(name, tmp_path):
     assert seen >= 5
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["rod_wall", "stick_slip", "sphere_beam", "split_wall", "hub_beam_stop"])
 def test_nominal_values_are_near_what_comes(name, tmp_path):
     compare_nominals(name, tmp_path)

@@ -70,6 +70,7 @@ def ecos(tmp_path_factory):
     return run
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_ecos_through_an_impact(ecos, tmp_path, version):
     scenario = load("pendulum_stop")

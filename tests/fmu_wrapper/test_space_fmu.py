@@ -55,7 +55,7 @@ def outputs(side):
     return {by_reference[k]: value for k, value in zip(side.reals, found, strict=True)}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in SAMPLE else [pytest.mark.full]) for n in SPATIAL])
 def test_the_bits_of_a_run_in_this_process(name, tmp_path):
     scenario, version = load(name), "2.0" if len(name) % 2 else "3.0"

@@ -100,6 +100,7 @@ FLIGHT = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("rotary", [False, True])
 def test_a_body_that_flies_and_vibrates_follows_the_solver(rotary: bool) -> None:
