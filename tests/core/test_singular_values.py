@@ -131,13 +131,15 @@ def test_a_look_for_a_singular_position_never_makes_the_dense_matrix(loops, monk
     assert len(shapes) < 1000
 
 
+@pytest.mark.full
 def test_steps_of_a_long_chain_that_fail_make_no_dense_matrix(monkeypatch):
-    """Of high order and loose tolerances: the second derivative of its rows is far off, so steps fail and a singular
-    position is looked for, which took eight seconds for each of eighty points."""
+    """As a look does in the test above, within a run. Of high order and loose tolerances: the second derivative of its
+    rows is far off, so steps fail and a singular position is looked for, which took eight seconds for each of eighty
+    points."""
     monkeypatch.setattr(ScaledJacobian, "matrix", property(lambda _: pytest.fail("the dense matrix was made")))
     looks, look = [], singular_values.smallest_singular
     monkeypatch.setattr(singular_values, "smallest_singular", lambda *a: looks.append(a) or look(*a))
-    sim = Simulation(load("chain", links=400).model, "adams", 0.1, 1e-3, record=False, order=8)
+    sim = Simulation(load("chain", links=1000).model, "adams", 0.1, 1e-3, record=False, order=8)
     sim.run_to(0.5)
     assert looks
     assert sim.t == 0.5
