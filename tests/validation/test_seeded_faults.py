@@ -88,10 +88,13 @@ TWICE = ("wrong inertia, in a force contact", "1 % in restitution, as a constrai
 
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize(
-    "what, name, parameters, t_end, fault",
-    [pytest.param(*f, id=f[0], marks=[pytest.mark.full] if f[0] in TWICE else []) for f in FAULTS],
+    "kind, what, name, parameters, t_end, fault",
+    [pytest.param(f[0][:8], *f, id=f[0], marks=[pytest.mark.full] if f[0] in TWICE else []) for f in FAULTS],
 )
-def test_a_seeded_fault_is_found(what: str, name: str, parameters: dict[str, Any], t_end: float, fault: Fault) -> None:
+def test_a_seeded_fault_is_found(
+    kind: str, what: str, name: str, parameters: dict[str, Any], t_end: float, fault: Fault
+) -> None:
+    """The sample has each kind: signs, factors, inertias."""
     found = checked(name, parameters, t_end, fault)
     assert not found.ok, what
 
