@@ -69,6 +69,7 @@ def test_bad_files_are_refused_before_any_work(tlismni: Command, tmp_path: Path)
     assert done.code == 1 and "cannot be read" in done.err
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("suffix", [".parquet", ".nc", ".h5"])
 def test_tables_for_others(tlismni: Command, tmp_path: Path, suffix: str) -> None:
     for module in ("pyarrow", "xarray", "h5netcdf", "h5py"):

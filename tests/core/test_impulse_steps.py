@@ -127,6 +127,7 @@ def test_a_rolling_ball_is_braked_by_turning():
     assert abs(values(sim)["ball.vx"]) < 1e-5
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("turned", [0.0, 0.7])
 def test_a_ball_that_rolling_friction_holds_on_a_slope_does_not_creep(turned):
     """tan(slope) < rho/R: it stays where it is, whichever way it would roll; beyond, it rolls with 5/7 of what is

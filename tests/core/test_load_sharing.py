@@ -162,7 +162,7 @@ ALONG, ASKEW = (1.0, 0.0), (0.6, 0.8)
 
 
 # pushed askew, feet come to their limits one after another, in seconds: as they are, and with static friction of four
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("feet", "static", "way"),
     [

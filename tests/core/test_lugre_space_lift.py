@@ -90,6 +90,7 @@ def test_lifted_ball_rolls_over_another():
     assert np.abs(across).max() < 1e-9 * np.abs(bent).max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("release", ["gap", "force"])
 def test_lifted_ball_bounces_as_in_the_plane(release):
     law = LAW.model_copy(update={"release_rule": release})

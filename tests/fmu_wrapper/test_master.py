@@ -71,6 +71,7 @@ def added_mass(extra):
     return [of_source("a", model, **EXACT)], [link]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
 def test_algebraic_loop_is_named_and_solved(algorithm):
     extra, t_end = 3.0, 2.0

@@ -27,6 +27,7 @@ def test_stability_limit(algorithm, weight):
         assert (late > early) == grows
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
 def test_what_lags_on_one_side_and_leads_on_the_other_is_stable_with_any_step(algorithm):
     """Undamped, with steps of up to two periods: the eigenvalues of the map stay on the unit circle."""

@@ -119,6 +119,7 @@ def test_going_back_here_and_in_another_instance(version, tmp_path):
         getattr(here.fmu, read)(bytes(data))
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_parameters_are_set_before_the_run(version, tmp_path):
     """The bits of the FMU with Python; a reset and a stored state take them along."""

@@ -130,6 +130,7 @@ def test_another_start_time(version, start, tmp_path):
     assert speed == pytest.approx(1.5 * max(0.0, t - max(0.5, start)), abs=1e-9)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_turns_of_a_driven_hinge_at_another_start_time(version, tmp_path):
     """The driver says how many whole turns there are at the start; the spring holds each of them."""

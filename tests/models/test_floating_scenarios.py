@@ -19,6 +19,7 @@ def run(name: str, tolerance: float = 1.0, **parameters: Any) -> Result:
 # ---- sphere_beam ----------------------------------------
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "parameters", [{}, {"formulation": "floating", "modes": 8}], ids=["modes", "floating frame and material point"]
 )

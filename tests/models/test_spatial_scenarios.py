@@ -43,6 +43,7 @@ def check_levels(result, most=1e-10):
     assert np.abs(result["residual.acceleration"]).max() < most * max(1.0, np.abs(result.a).max())
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "adams"])
 def test_heavy_top(method):
     result = run("heavy_top", [*HEAVY_TOP], method)

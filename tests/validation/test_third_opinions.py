@@ -58,7 +58,7 @@ RUNS: list[tuple[str, dict[str, Any], float | None]] = [
 ]
 
 
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name, parameters, t_end", RUNS, ids=lambda x: x if isinstance(x, str) else "")
 def test_the_solver_follows_the_third_opinion(name: str, parameters: dict[str, Any], t_end: float | None) -> None:
     scenario = load(name, **parameters)

@@ -90,6 +90,7 @@ def test_the_limit_of_meshes_finds_the_order_that_they_show(order: float) -> Non
         assert limit == changing[-1] and bar >= np.abs(np.diff(changing)).max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("coarsest", [10, 25])
 def test_the_bars_of_meshes_hold_the_waves_that_no_mesh_resolves(coarsest: int) -> None:
     # the force EA v/c for 2 L/c (d'Alembert); three meshes whose changes pass zero by chance look converged
