@@ -36,7 +36,7 @@ def job(item: str, tell: Callable[[str], None]) -> str:
 
 def test_a_process_that_ends_or_hangs_takes_its_own_item_only() -> None:
     told: list[tuple[str, str]] = []
-    pool: Workers[str, str] = Workers(job, 2, lambda item, code, seconds: f"{item}: {code}", limit=5.0)
+    pool: Workers[str, str] = Workers(job, 2, lambda item, code, seconds: f"{item}: {code}", limit=2.0)
     found = dict(pool.run(["a", "crash", "hang", "b", "c"], lambda item, text: told.append((item, text))))
     assert found == {"a": "A", "b": "B", "c": "C", "crash": "crash: 3", "hang": "hang: None"}
     assert {item for item, text in told if text == f"begun {item}"} == set(found)
