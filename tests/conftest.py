@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from sampled_cases import mark_left_out
 from shared_work import DURATIONS, LISTED, SharedWork, durations, function_of, seconds_of, shares
 
 settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -52,9 +53,11 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SharedWork |
     return SharedWork(config, log) if config.getoption("dist") == "load" else None
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """By powers of two of seconds. Tests of a file that share what is made once for it stay together, where the longest
-    of them is."""
+    of them is. What samples leave out is marked before pytest looks for the marker."""
+    mark_left_out(items)
     level = {item: math.ceil(math.log2(seconds_of(item.nodeid) / LISTED)) for item in items}
     together: dict[Path, int] = defaultdict(int)
     for item in items:

@@ -69,6 +69,7 @@ else:
 RUN = "from tlismni.core import simulate; result = simulate(ball.model, 0.1); "
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "absent, code, extra",
     [

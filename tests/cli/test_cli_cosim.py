@@ -50,6 +50,7 @@ def test_export(tlismni: Command, tmp_path: Path) -> None:
     assert {item.name: item.value for item in method.declaredType.items}["irk"] == starts["solver.method"]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("given", "version"), [("2", "2.0"), ("3", "3.0"), ("3.0", "3.0")])
 def test_export_of_a_version(tlismni: Command, tmp_path: Path, given: str, version: str) -> None:
     import fmpy

@@ -41,6 +41,7 @@ def system(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("suffix", [".csv", ".json", ".npz"])
 def test_results_in_all_formats(tlismni: Command, system: Path, suffix: str) -> None:
     out = system.with_suffix(suffix)

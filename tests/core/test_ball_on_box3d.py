@@ -53,6 +53,7 @@ def body(name="ball", **more):
     return RigidBody3D(name=name, **{"mass": 1.0, "inertia": (4e-3,) * 3} | more)
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("kind", ["box", "hull", "round"])

@@ -39,6 +39,7 @@ def towards(kind, height, speeds, friction):
     return Model(gravity=(0.0, -G), bodies=bodies, groups=[group])
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("kind", ["boxes", "polygons"])
 @pytest.mark.parametrize("height", [0.15, 0.1, 0.2])
 @pytest.mark.parametrize("friction", [0.0, 0.1])

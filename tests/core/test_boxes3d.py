@@ -50,6 +50,7 @@ def energy(result):
     return result["energy.kinetic"] + result["energy.potential"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("friction", [None, CoulombFriction(coefficient=0.4)], ids=["smooth", "rough"])
 @pytest.mark.parametrize("falls", [(0.0, 0.0, 0.3), (0.5, 0.0, 0.2), (0.5, 0.6, 0.1)], ids=["face", "edge", "corner"])
 def test_a_box_falls_on_a_box_and_lies(falls, friction):
@@ -182,6 +183,7 @@ def overlap(result, shapes):
     return -min(clearance(result, a, b).min() for k, a in enumerate(shapes) for b in shapes[:k])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [*range(5), *only_in_full(range(5, 10))])
 def test_what_is_thrown_at_each_other_keeps_momentum_and_energy(seed):
     """Without loss; the impacts themselves are exact, and the flight between them to what it is integrated to."""
@@ -200,6 +202,7 @@ def test_what_is_thrown_at_each_other_keeps_momentum_and_energy(seed):
         assert total[after] == pytest.approx(total[before], abs=1e-12)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [*range(20, 24), 48, *only_in_full(range(24, 30))])
 def test_what_sticks_to_each_other_and_slides_off_keeps_momentum(seed):
     """Without bounce, with friction: they turn about edges and corners, slide over them and part."""

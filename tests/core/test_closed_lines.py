@@ -172,9 +172,9 @@ def node_angle(k):
 
 
 def test_cam_of_many_turns_is_the_eccentric_circle():
-    """Twelve turns on a constraint: motion and force of the closed form, to what 48 nodes leave of a circle."""
+    """Six turns on a constraint: motion and force of the closed form, to what 48 nodes leave of a circle."""
     turn = 2.0 * math.pi / SPEED
-    grid = np.linspace(0.1, 0.1 + 11.0 * turn, 551)
+    grid = np.linspace(0.1, 0.1 + 5.0 * turn, 251)
     result = simulate(cam(NewtonImpact(restitution=0.0), lift=1e-5), grid[-1], rtol=1e-7, t_eval=grid)
     y, rate, force = analytic(grid)
     assert result["roller.y"] == pytest.approx(y, abs=1e-6)
@@ -183,11 +183,12 @@ def test_cam_of_many_turns_is_the_eccentric_circle():
     assert result["c.normal_force"] == pytest.approx(force, rel=0.02)
     # over full turns that comes to nothing
     impulse = result["c.impulse"][-1] - result["c.impulse"][0]
-    assert impulse == pytest.approx(11.0 * turn * np.mean(force[1:]), rel=1e-4)
+    assert impulse == pytest.approx(5.0 * turn * np.mean(force[1:]), rel=1e-4)
     assert [event.kind for event in result.events] == ["impact", "close"]
     assert max(residuals(result)) < 1e-9
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "law, friction",
     [

@@ -207,6 +207,7 @@ def test_error_control_follows_the_tolerance(name, exponent, bound):
     assert all(error > 1e-3 * rtol**exponent for error, rtol in zip(errors, tolerances, strict=True))
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("name", ["baumgarte rk45", "projection", "hht_i3", "hht_ggl", "generalized_alpha index2"])
 def test_restored_run_repeats_itself_bit_for_bit(case, name):

@@ -110,6 +110,7 @@ def foreign(data: bytes) -> bytes:
     return b"not what was written"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("damage", [empty, cut, flipped, foreign])
 def test_damaged_entries_are_removed_and_compiled_anew(folder, fresh, caplog, damage):
     fresh().shifted(3)

@@ -45,6 +45,7 @@ SCENARIOS = {
 }
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SCENARIOS)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
 def test_runs_are_those_that_are_built_for_themselves_bit_for_bit(name, method):

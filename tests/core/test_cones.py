@@ -82,6 +82,7 @@ def violation(problem, normal, tangential):
     return max(np.max(np.abs(np.minimum(beyond, w_n))), np.max(np.abs(off * c))) / size
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("based", [False, True])
 @pytest.mark.parametrize("known", [False, True])
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 8, 9, 14, 30, 60])

@@ -82,6 +82,7 @@ def test_poissons_law_creates_none_in_the_same_impact(caplog):
     assert not caplog.records
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 def test_poissons_law_never_gains_over_random_blows_of_a_rod(e):
     rng = np.random.default_rng(3)

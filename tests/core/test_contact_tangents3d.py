@@ -196,6 +196,7 @@ def grips():
         yield pytest.param(shape, where, turning, marks=[pytest.mark.full] if moves and where != "two bodies" else [])
 
 
+@pytest.mark.sampled(40)
 @pytest.mark.parametrize(("shape", "where", "turning"), list(grips()))
 @pytest.mark.parametrize("slides", SLIDES)
 def test_tangent_of_coulomb_friction(shape, where, slides, turning):

@@ -28,6 +28,7 @@ def reference(force, t_end, q0=0.0):
     return found.y[:, -1]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("method", ["hht", "newmark", "bdf", "irk", "ebdf", "generalized_alpha"])
 def test_a_step_that_fails_is_made_of_smaller_ones(method, caplog):
     """And the result is that of a stiff integrator of another kind."""
@@ -62,6 +63,7 @@ def test_steps_that_converge_are_not_touched():
     assert result.stats["divided_steps"] == 0 and result.stats["steps"] == 1000
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("method", ["irk", "ebdf", "newmark", "generalized_alpha"])
 @pytest.mark.parametrize("seed", range(3))
 def test_parts_that_end_a_rounding_before_the_whole_step_end_it(method, seed):
@@ -79,6 +81,7 @@ def restless(t, q, v):
     return [3.0 * np.sin(1e4 * t) - 2.0 * np.tanh(v[0] / 1e-8)]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["hht", "bdf", "irk"])
 def test_a_run_most_of_whose_steps_fail_ends_and_says_so(method):
     """Division is for rare instants: ten steps, and a tenth of all."""

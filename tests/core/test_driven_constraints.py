@@ -71,6 +71,7 @@ def test_multiplier_of_a_growing_circle_is_the_centripetal_force():
     assert np.abs(np.arctan2(*result.q.T[::-1]) - angle).max() < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method, bound", [("ebdf", 1e-7), ("irk", 1e-7), ("bdf", 1e-6), ("hht", 2e-3)])
 def test_bead_on_a_rotating_rod_flies_outwards(method, bound):
     """r = r0 cosh(w t); the rod pushes with 2 m w r'."""

@@ -55,6 +55,7 @@ def _reached(way):
     return (SPEED - np.sqrt(SPEED**2 - 2.0 * braking * way)) / braking
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "bdf"])
 @pytest.mark.parametrize("order", [(0, 1, 2, 3, 4, 5), (5, 2, 0, 3, 1, 4)])
 @pytest.mark.parametrize("rows", ROWS.values(), ids=ROWS)

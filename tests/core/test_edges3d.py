@@ -41,6 +41,7 @@ def random_turn(rng):
     return euler / np.linalg.norm(euler)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "kinds", [("box", "box"), ("box", "hull"), ("hull", "hull"), ("capsule", "box"), ("hull", "capsule")]
 )

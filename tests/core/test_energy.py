@@ -86,6 +86,7 @@ def test_ledger_closes_for_a_mechanism_that_strikes(law):
     assert imbalance(result) < 1e-7
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", FORCE_LAWS.values(), ids=lambda kind: kind.__name__)
 def test_ledger_of_own_equations_is_that_of_the_model(kind):
     """A bounce and a start in touch, by a gap function and by shapes: the same strain energy and losses."""

@@ -55,6 +55,7 @@ def test_a_rotor_on_a_hinge_keeps_its_speed(method: str) -> None:
     assert steps <= 22.0  # the start included
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("seed", range(16))
 def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     rng = np.random.default_rng(seed)

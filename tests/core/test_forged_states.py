@@ -187,6 +187,7 @@ def test_a_past_that_cannot_be_is_refused():
     assert forge_past("a chain") == 11
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["a pendulum over impacts", "a chain"])
 def test_random_numbers_end_no_process(name):
     assert in_a_process("scramble", name, 1, 60) == [60]

@@ -42,6 +42,7 @@ def least(p, a, b, mu):
     return found
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(20))
 def test_least_forces_of_a_box_that_rests_are_the_pseudoinverse(seed):
     """Loads that hold the box with friction to spare: of all forces the least, whatever the solver began with."""
@@ -55,6 +56,7 @@ def test_least_forces_of_a_box_that_rests_are_the_pseudoinverse(seed):
     np.testing.assert_allclose(least(p, a, b, mu), wanted, atol=1e-9 * np.abs(wanted).max())
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("seed", range(20))
 def test_least_forces_are_the_limit_of_compliant_contacts(seed):
     """Some feet at their limits: null vectors n of the rows that are held leave n^T P = 0 for the rest to share."""
@@ -112,6 +114,7 @@ def box(height=0.1):
 INVERSE = np.diag([0.5, 0.5, 0.5, 50.0, 33.0, 25.0])
 
 
+@pytest.mark.sampled(60)
 @pytest.mark.parametrize("mu", [0.1, 0.4, 0.8])
 @pytest.mark.parametrize("seed", range(60))
 def test_four_corners_of_a_box(mu, seed):
@@ -128,6 +131,7 @@ def test_four_corners_of_a_box(mu, seed):
     assert after @ mass @ after <= v @ mass @ v * (1.0 + 1e-9)
 
 
+@pytest.mark.sampled(40)
 @pytest.mark.parametrize("seed", range(100))
 def test_one_contact_of_any_body(seed):
     """A full block: the direction of sliding turns in the blow."""
@@ -163,6 +167,7 @@ def test_a_polygon_would_err_in_direction():
     assert math.atan2(p[2], p[1]) == pytest.approx(angle - math.pi, abs=1e-14)
 
 
+@pytest.mark.sampled(60)
 @pytest.mark.parametrize("seed", range(300))
 def test_corners_that_are_nearly_at_rest(seed):
     """Weight of a moment and speeds from far less than it to far more: sticking, sliding, and what is between."""
@@ -227,6 +232,7 @@ HARD = (152, 491, 1085, 1273, 1602, 2441, 2516, 2695, 2761)
 with friction find nothing; and two (2516, 2761) in which a long step along the path ends on another one."""
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("seeds", [range(100), range(100, 200), HARD], ids=["100", "200", "hard"])
 def test_rings_of_spheres_that_wedge_each_other(seeds):
     for seed in seeds:
@@ -244,6 +250,7 @@ def test_forces_that_do_not_exist_are_not_found():
     assert _solve(address, 1, a, *args, p, work.ctypes.data) != FOUND
 
 
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("rank", [6, 4, 2])
 @pytest.mark.parametrize("seed", range(10))
 def test_friction_with_three_tangents_lies_in_a_ball(seed, rank):

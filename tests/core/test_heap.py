@@ -84,6 +84,7 @@ def test_size_of_a_row_is_what_its_entries_make_of_the_coordinates(count, seed):
 
 
 # what the error control leaves in the energy: at its tolerance of 1e-6 a method of second order more than one of fifth
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("method, ledger", [("ebdf", 1e-8), ("hht", 1e-6)])
 @pytest.mark.parametrize("restitution, friction, seed", [(0.3, 0.4, 0), (0.0, 0.2, 1)])
 def test_a_small_heap_comes_to_rest(method, ledger, restitution, friction, seed):

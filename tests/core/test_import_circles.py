@@ -101,6 +101,7 @@ BELOW_SIMULATION = (
 )
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("place", BELOW_SIMULATION.split())
 def test_nothing_below_simulation_takes_a_whole_simulation(place):
     files = sorted((ROOT / "core" / place).rglob("*.py"))

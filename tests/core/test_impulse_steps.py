@@ -127,6 +127,7 @@ def test_a_rolling_ball_is_braked_by_turning():
     assert abs(values(sim)["ball.vx"]) < 1e-5
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("turned", [0.0, 0.7])
 def test_a_ball_that_rolling_friction_holds_on_a_slope_does_not_creep(turned):
     """tan(slope) < rho/R: it stays where it is, whichever way it would roll; beyond, it rolls with 5/7 of what is
@@ -269,6 +270,7 @@ def meets_its_circle(force, rate, limit):
     assert np.abs((force * rate).sum(axis=0) + size * speed).max() < 1e-8
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("turns", [False, True])
 def test_sweeps_meet_the_conditions_of_contact(seed, turns):
@@ -302,6 +304,7 @@ def test_sweeps_of_a_long_pile_need_conjugate_gradients():
     assert used < 4000
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("count", [3, 40])
 def test_overlaps_are_closed_by_the_least_motion(seed, count):

@@ -130,6 +130,7 @@ def out_of_balance(sim, model, masses):
     return momentum - masses.sum() * np.array(model.gravity) * sim.t_internal - received
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("law", "loop"), [("linear", False), ("stiff", False), ("hertz", False), (None, True)])
 def test_momentum_is_that_of_gravity_and_walls(law, loop):
     """Without friction; each step adds what the impulses and forces of the walls say."""
@@ -146,6 +147,7 @@ def test_momentum_is_that_of_gravity_and_walls(law, loop):
         assert len(sim.workspace.dropped) == 3
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("law", "loop"), [("hertz", False), ("linear", True)])
 def test_a_heap_comes_to_rest(law, loop):
     """In nothing but such steps; the loop beside it swings on as it does alone."""
@@ -170,6 +172,7 @@ def test_a_heap_comes_to_rest(law, loop):
         assert now["coupler.vx"] == pytest.approx(values(alone)["coupler.vx"], abs=1e-5)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("stiffness", [1e4, 1e6])
 def test_a_block_rests_on_a_hard_and_a_soft_foot(stiffness):
     """In the plane: the soft foot is pressed in, which tilts the block, and carries a little more than half of the

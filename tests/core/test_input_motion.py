@@ -112,6 +112,7 @@ def test_a_moving_wall_is_the_resting_one_seen_from_a_moving_frame():
     assert [event.kind for event in moving.events] == ["close", "open"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("force", [False, True])
 @pytest.mark.parametrize("given, order", [(False, 1.8), (True, 2.7)])
 def test_a_coarse_motion_converges_with_the_communication_step(force, given, order):

@@ -101,6 +101,7 @@ def test_inputs_that_change_give_the_motion_of_the_step_function(method, every):
     assert values[channels.index("energy.balance")] == pytest.approx(0.0, abs=1e-8)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("method", METHODS)
 def test_changes_at_irregular_points_give_the_motion_of_the_step_function(method):
     """Steps that end where a change is expected can be tiny beside their neighbours: samples between must not feel it.

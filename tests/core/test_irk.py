@@ -147,6 +147,7 @@ def test_error_control_follows_the_tolerance(tableau, bound):
     assert errors[0] > errors[1] > errors[2]
 
 
+@pytest.mark.sampled(2)
 @every_tableau
 @pytest.mark.parametrize("damping", [0.0, 0.5])
 def test_the_estimate_sees_the_error_of_a_linear_equation(tableau, damping):
@@ -193,6 +194,7 @@ def test_constraints_hold_at_all_three_levels(tableau, scenario):
         assert max(residuals(result)) <= 1e-11
 
 
+@pytest.mark.sampled(1)
 @every_tableau
 def test_driven_constraint(tableau):
     """Bead on a rotating rod: r = r0 cosh(w t), the rod pushes with 2 m w r'."""
@@ -322,6 +324,7 @@ def test_bouncing_ball(tableau):
     assert np.abs(resting["floor.gap"][resting.t > resting.events[-1].t]).max() < 1e-14
 
 
+@pytest.mark.sampled(8)
 @every_tableau
 @pytest.mark.parametrize("case", CASES)
 def test_restored_run_repeats_itself_bit_for_bit(tableau, case):

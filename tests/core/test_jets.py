@@ -76,6 +76,7 @@ COMPILED = {}
 places = st.floats(0.2, 2.5)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", FORMULAS)
 def test_derivatives_are_those_of_the_interpreted_jets(name):
     formula, plain = FORMULAS[name]

@@ -207,6 +207,7 @@ def swings(angle: float, rate: float, t_end: float) -> tuple[float, list[float]]
     return angle, turns
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("space", [False, True])
 def test_a_pendulum_in_a_bearing_against_an_integration_of_its_own(space: bool) -> None:
     """The friction follows the force of the bearing, centrifugal part and all: mu R |F|."""

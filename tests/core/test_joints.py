@@ -258,6 +258,7 @@ class SliderCrank:
         )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method, bound", [("ebdf", 1e-7), ("irk", 1e-7), ("bdf", 1e-4)])
 def test_slider_crank_closed_loop_through_several_turns(method, bound):
     crank, torque, start, rate = SliderCrank(), 1.5, 0.5, 6.0

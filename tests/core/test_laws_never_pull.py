@@ -161,6 +161,7 @@ def laid(law, load, depth, mass=1.0):
     return rhs
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 @pytest.mark.parametrize("kind", [HuntCrossley, LeeWang, Gonthier, CarvalhoMartins])
 def test_a_load_on_a_part_at_rest_is_damped_as_by_the_blow_that_goes_as_deep(kind, exponent):

@@ -228,6 +228,7 @@ SPRING = KelvinVoigt(stiffness=5e3, damping=4.0)
 RUB = TanhFriction(coefficient=0.2, transition_speed=0.05)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("law, friction", [(NewtonImpact(restitution=0.6), None), (SPRING, None), (SPRING, RUB)])
 def test_straight_line_is_a_half_plane(law, friction):
     """A thrown wheel that bounces, slides and rolls over six segments of different lengths: the same motion."""

@@ -47,6 +47,7 @@ def exact(times, mass=M, damping=C, stiffness=K, force=F, q0=Q0, v0=V0):
     return np.array([expm(a * t) @ (np.concatenate([q0, v0]) - rest) + rest for t in times])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "hht_i3"])
 def test_motion_is_that_of_the_matrix_exponential(method):
     options = {"step": 2e-3} if method == "hht_i3" else TIGHT

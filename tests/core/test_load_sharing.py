@@ -162,6 +162,7 @@ ALONG, ASKEW = (1.0, 0.0), (0.6, 0.8)
 
 
 # pushed askew, feet come to their limits one after another, in seconds: as they are, and with static friction of four
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("feet", "static", "way"),
     [
@@ -287,6 +288,7 @@ def groove_forces(torque):
     return (one, other), ((both + less) / 2.0, abs(both - less) / 2.0)
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("method", ["ebdf", "irk"])
 @pytest.mark.parametrize("swapped", [False, True])
 @pytest.mark.parametrize("part", [0.0, 0.01, 0.6, -0.6, 0.99])
@@ -362,6 +364,7 @@ def test_feet_in_a_line_share_the_weight_linearly(places, method):
         assert np.max(np.abs(result.v)) < 1e-12
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("static", [0.3, 0.45])
 @pytest.mark.parametrize("at", [0.0, -0.2, 0.1])
 @pytest.mark.parametrize("places", LINES.values(), ids=LINES)

@@ -59,6 +59,7 @@ def tenths(values):
     return values[:part].max(), values[-part:].max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "hht"])
 @pytest.mark.parametrize("build, moved", [(turning_slider_crank, 50.0), (swinging_four_bar, 0.5)])
 def test_constraints_hold_without_drift_over_a_hundred_thousand_steps(build, moved, method):

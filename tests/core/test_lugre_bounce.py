@@ -48,6 +48,7 @@ def spin_after(s0: float, s1: float, s2: float, speed: float, spin: float) -> fl
     return float(run.y[3, -1])
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("release", ["force", "gap"])
 @pytest.mark.parametrize("bristles", [(1e4, 30.0, 0.0), (1e5, 100.0, 0.4), (1e3, 1.0, 0.0)], ids=str)
 @pytest.mark.parametrize("speed, spin", [(1.0, 0.0), (0.05, -0.2)])

@@ -73,6 +73,7 @@ def block(force, times, max_step=np.inf):
     return found.y
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "bdf", "irk"])
 def test_break_away_under_a_growing_force(method):
     """It is held by a spring s0, breaks away below the static friction, and slides on with the kinetic one."""

@@ -90,6 +90,7 @@ def test_lifted_ball_rolls_over_another():
     assert np.abs(across).max() < 1e-9 * np.abs(bent).max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("release", ["gap", "force"])
 def test_lifted_ball_bounces_as_in_the_plane(release):
     law = LAW.model_copy(update={"release_rule": release})
@@ -142,6 +143,7 @@ def thrown(angle, spin=(3.0, -8.0, 5.0), marker=0.0, lower=False):
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("lower", [False, True], ids=["floor", "ball"])
 def test_turning_all_about_the_vertical_changes_nothing(lower):
     one = thrown(0.0, lower=lower)

@@ -105,6 +105,7 @@ def test_flat_above_a_plane_gaps_are_heights(name):
         assert heights[-1] == pytest.approx(speed * last - 0.5 * G * last**2, abs=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("friction", [None, GRIP], ids=["smooth", "rough"])
 @pytest.mark.parametrize("name", SHAPES)
 def test_dropped_tilted_it_comes_to_rest(name, friction):

@@ -156,6 +156,7 @@ def in_space(seed, points):
     return throw
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("throw", "points"), [(in_plane, 8), (in_plane, 16), (in_space, 8)])
 def test_a_blow_fulfils_all_laws_or_says_that_it_does_not(throw, points, caplog):
     """Restitution e near 1 and friction. Many points separate beforehand, and are struck all the same, by the others:

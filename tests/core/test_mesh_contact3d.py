@@ -227,6 +227,7 @@ def hilly(x, y):
     return 0.25 * math.sin(3.0 * x) * math.cos(2.0 * y)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("bump", [None, hilly], ids=["flat", "hilly"])
 def test_the_least_gap_is_the_distance_from_the_surface(bump):
     """Over, beside and under a plate with hills and hollows, of which each convex part is a contact."""

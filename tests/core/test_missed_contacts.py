@@ -26,6 +26,7 @@ def missed(kind, seeds, ways):
     return found
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", PASSAGES)
 def test_no_passage_is_missed(kind):
     assert missed(kind, range(SAMPLE), CONTROLLED + FIXED + COMPARED) == []

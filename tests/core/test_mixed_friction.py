@@ -144,6 +144,7 @@ def same_parts(own, mixed, places, with_events=True):
                 assert getattr(one, what) == pytest.approx(getattr(other, what), abs=places)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("flat", "spatial", "t_end", "kinds"),
     [
@@ -204,6 +205,7 @@ def thrown(seed, law):
     return Model(gravity=DOWN, bodies=flat, contacts=of_flat), Model(gravity=DOWN, bodies=spatial, contacts=of_spatial)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("law", [NewtonImpact, PoissonImpact])
 def test_random_impacts_at_one_instant(law):
     """Impulses and friction of 30 random blows of both kinds at one instant as those of the parts: 1e-11."""

@@ -51,6 +51,7 @@ def jumping_model():
     )  # fmt: skip
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     "name, t_end",
     [
@@ -72,6 +73,7 @@ def test_the_same_bits_at_other_times(name, t_end):
     assert run.model.names(1) == tuple(channel.name for channel in sim.channels)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name, t_end",
     [
@@ -162,6 +164,7 @@ def test_events_one_by_one():
     assert run.t == sim.t == 0.5 and seen > 20
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name, t_end", [("woodpecker", 0.5), ("chain", 1.0), ("pendulum", 6.0)])
 def test_going_back_and_to_other_runs(name, t_end):
     from tlismni.core.native.in_process import NativeRun
@@ -182,6 +185,7 @@ def test_going_back_and_to_other_runs(name, t_end):
         assert run.pack() == other.pack()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name, t_end, parameter, value", [
     ("pendulum_stop", 1.0, "mass", 0.3), ("slider_crank_stop", 0.5, "crank_mass", 0.5), ("chain", 0.5, "gravity", 3.7),
 ])  # fmt: skip
@@ -334,6 +338,7 @@ def test_numbers_of_c_are_those_of_python():
     assert checked > 30
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "name, t", [("woodpecker", 0.21), ("slider_crank_stop", 0.05), ("chain", 0.3), ("stick_slip", 1.1)]
 )

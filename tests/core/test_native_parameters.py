@@ -13,6 +13,7 @@ needs_library = pytest.mark.skipif(LIBRARY is None, reason="needs the library of
 VALUES = np.random.default_rng(1).uniform(0.2, 11.0, 75)
 
 
+@pytest.mark.sampled(60)
 @pytest.mark.parametrize("constant", [0.1, -3.7, 1.0 / 3.0, math.pi])
 @pytest.mark.parametrize(
     "unary, binary", [(i, k) for i in range(len(UNARY)) for k in range(len(BINARY)) if i < SUMS or k < SUM]

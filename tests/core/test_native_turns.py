@@ -93,6 +93,7 @@ def test_a_run_that_begins_anew_is_one_that_begins_there(driver):
         assert values["hinge.angle"] == pytest.approx(said, abs=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("case", [*DRIVERS, "flipped", "said by the hinge", "faster than in the image"])
 def test_the_same_bits_from_other_times(case):

@@ -27,6 +27,7 @@ def unsolved(sim: Simulation) -> float:
     return float(np.sqrt(np.mean(missing**2))) if solved else np.nan
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "bdf", "irk"])
 def test_accelerations_belong_to_their_coordinates(method: str) -> None:
     """Links that crack like a whip: increments that old matrices make too small may hide behind others that shrink
@@ -40,6 +41,7 @@ def test_accelerations_belong_to_their_coordinates(method: str) -> None:
     assert np.nanquantile(found, 0.99) < UNSOLVED
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("links", "method", "rtol", "t_end"),
     [(10, "ebdf", 1e-6, 25.0), (10, "bdf", 1e-8, 10.0), (10, "mebdf", 1e-8, 20.0), (20, "ebdf", 1e-8, 12.0)],

@@ -21,6 +21,7 @@ def stiffness(contraction):
     return 4.0 * contraction / STEP**2
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("method", ["newmark", "hht", "bdf", "ebdf", "adams", "sdirk4"])
 @pytest.mark.parametrize("options", [{"outer": "jfnk"}, *({"outer": "simple", **o} for o in ACCELERATED)])
 def test_every_outer_loop_finds_the_same_solution(method, options):

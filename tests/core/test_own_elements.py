@@ -111,6 +111,7 @@ FRICTIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", FRICTIONS)
 def test_wheel_from_two_formulas_is_the_library_s(name):
     """Thrown with spin, it bounces, slides and rolls: the same with all kinds of friction."""

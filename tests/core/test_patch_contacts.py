@@ -45,6 +45,7 @@ def test_other_shapes_rub_alike(contact):
     assert ends[1] == pytest.approx(ends[0], rel=1e-6) and ends[2] == pytest.approx(ends[0], rel=1e-6)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("radius", [5e-3, 5e-2])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_box_that_spins_on_its_corners_comes_to_rest(seed, radius):

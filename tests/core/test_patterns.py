@@ -8,6 +8,7 @@ from tlismni.core.assembly import workspace
 from tlismni.models import load
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "build, t_end",
     [

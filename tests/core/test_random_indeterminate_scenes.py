@@ -30,6 +30,7 @@ EDGES = (191, 701, 873)
 """Of stacks whose corners pass edges, in the plane: the force of a contact jumps, and with it that of others."""
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("seed", PLANE)
 def test_planar_scene_is_that_of_any_order_and_units(seed):
     _examine(scene(seed, 2))
@@ -40,6 +41,7 @@ def test_spatial_scene_is_that_of_any_order_and_units(seed):
     _examine(scene(seed, 3))
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("seed", EDGES)
 def test_corner_passes_an_edge_alike_in_any_order_and_units(seed):
     drawn = scene(seed)
@@ -106,6 +108,7 @@ def test_reference_of_feet_that_spin_brakes_each_with_its_share():
     np.testing.assert_allclose(turn[5], -0.3 * 2.0 * G * np.hypot(0.2, 0.2) / 0.08, rtol=1e-8)
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("seed", range(12))
 def test_reference_follows_the_laws_and_does_not_depend_on_its_compliance(seed, dimension):
@@ -121,6 +124,7 @@ def test_reference_follows_the_laws_and_does_not_depend_on_its_compliance(seed, 
     assert np.all(friction <= problem.static.astype(float) * normal + 1e-9 * largest)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_reference_is_that_of_any_order_and_attitude(dimension):
     for seed in range(6):

@@ -82,6 +82,7 @@ def test_double_guide(method):
     assert max(residuals(two)) < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("third", [(2.0, 0.0), (0.5, 0.7)])
 @pytest.mark.parametrize("method", ["ebdf", "irk"])
 def test_three_parallel_cranks_through_full_turns(third, method):

@@ -269,6 +269,7 @@ def swing_on_two_bearings():
     return rate, forces(theta, rate, acceleration(theta, rate))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("method", "error"), [("ebdf", 1e-7), ("irk", 1e-7), ("bdf", 2e-6), ("hht", 5e-5)])
 def test_friction_of_redundant_bearings_follows_their_shares(method, error):
     rate, forces = swing_on_two_bearings()

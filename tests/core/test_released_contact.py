@@ -24,6 +24,7 @@ def forced(t, state):
     return v, -G + (max(0.0, -STIFFNESS * y - DAMPING * v) if y < 0.0 else 0.0)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("method", ["ebdf", "irk"])
 @pytest.mark.parametrize("speed", [1.3, 1.35, 1.4, 1.45, 1.8])
 def test_gravity_presses_it_again_while_it_still_separates(speed, method):

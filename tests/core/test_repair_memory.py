@@ -25,6 +25,7 @@ CASES = {
 }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", CASES)
 def test_a_run_with_room_has_the_bits_of_one_without(name):
     scenario = load(CASES[name][0])

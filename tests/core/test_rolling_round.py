@@ -40,6 +40,7 @@ def rolling(direction, inside):
     return Model(gravity=(0.0, 0.0, 0.0), bodies=[ball], forces=[spring], contacts=[contact]), circle
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("inside", [True, False], ids=["in a hollow sphere", "on a sphere"])
 @pytest.mark.parametrize("direction", [0.0, 0.5, 0.5 * np.pi, 2.0, 4.0])
 @pytest.mark.parametrize("method", ["ebdf", "irk"])

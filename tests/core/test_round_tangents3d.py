@@ -130,6 +130,7 @@ def gripping(name, slide):
     return point
 
 
+@pytest.mark.sampled(30)
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("slides", [kind for kind in SLIDES if SLIDES[kind] is not None])
 def test_tangent_and_rates_of_coulomb_friction(name, slides):

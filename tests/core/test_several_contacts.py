@@ -233,6 +233,7 @@ def side(ws):
     return orientation(ws)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("ratio", [0.3, -30.0, 30.0])
 def test_constant_share_of_a_held_contact_is_no_jam(ratio):
     """A box on two steps, pushed until the foot with less load is at its friction limit, and a block that slides:

@@ -70,6 +70,7 @@ def passes(name, rtol, start, loops):
     assert np.abs(q[3 * (loops + 1) + 2 :: 3][:loops]).max() < 1e-9 or loops == 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", [*HIGH, *MEDIUM, *LOW])
 def test_sample_of_the_grid(name):
     tolerances = (1e-4, 1e-6, 1e-7) if name in LOW else (1e-4, 1e-7, 1e-9, 1e-11, 1e-12)
@@ -103,6 +104,7 @@ def test_run_may_stop_next_to_the_position_and_go_on(method, rtol, away):
     assert np.abs(row[[12, 15]]).max() < 1e-10
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method, rtol, interval", [("ebdf", 1e-6, 1e-3), ("irk", 1e-10, 1e-3), ("ebdf", 1e-9, 2e-4)])
 def test_steps_that_end_at_fixed_times_pass_too(method, rtol, interval):
     """No step may be longer than the interval, so that some begin and end where rounding is large."""
@@ -138,6 +140,7 @@ def test_own_equations_on_crossing_lines(method, start):
     assert result.q[-1] == pytest.approx([start + 1.5, start + 1.5], abs=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("angle", [0.05, 0.005, -0.005, -0.05])
 def test_impact_beside_the_position(angle):
     """The tip of a crank strikes a floor; the motion is that of one coordinate, so that e belongs to its rate."""

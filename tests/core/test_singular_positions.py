@@ -47,6 +47,7 @@ def test_singular_start_of_own_equations():
         simulate(system, 1.0)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "method, rtol, error, drift",
     [
@@ -73,6 +74,7 @@ def test_a02_passes_its_singular_positions(method, rtol, error, drift):
     assert residuals(result)[0] < 1e-10
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("method", ["ebdf", "irk"])
 @pytest.mark.parametrize("rate", [-5.5, -6.1, -7.3, 8.0, -9.7])
 def test_parallelogram_passes_at_any_phase(method, rate):
@@ -96,6 +98,7 @@ def test_steps_of_any_size_pass():
     assert passed >= 24
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "mebdf", "irk"])
 def test_slider_crank_with_rod_as_long_as_its_crank(method):
     """Singular with the slider on the pin (theta = +-90 degrees): it must go through, x = 2 r cos(theta), and not stay

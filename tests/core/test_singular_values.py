@@ -60,6 +60,7 @@ def test_rows_that_repeat_others(left_out):
     compare(of_scaled_rows(np.vstack([dense, repeated])), left_out + 1)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("exponent", range(3, 13))
 def test_nearly_dependent_rows(exponent):
     rng = np.random.default_rng(exponent)
@@ -69,6 +70,7 @@ def test_nearly_dependent_rows(exponent):
     compare(of_scaled_rows(dense), 1)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(4))
 def test_coordinates_of_all_sizes(seed):
     rng = np.random.default_rng(seed)
@@ -129,9 +131,11 @@ def test_a_look_for_a_singular_position_never_makes_the_dense_matrix(loops, monk
     assert len(shapes) < 1000
 
 
+@pytest.mark.full
 def test_steps_of_a_long_chain_that_fail_make_no_dense_matrix(monkeypatch):
-    """Of high order and loose tolerances: the second derivative of its rows is far off, so steps fail and a singular
-    position is looked for, which took eight seconds for each of eighty points."""
+    """As a look does in the test above, within a run. Of high order and loose tolerances: the second derivative of its
+    rows is far off, so steps fail and a singular position is looked for, which took eight seconds for each of eighty
+    points."""
     monkeypatch.setattr(ScaledJacobian, "matrix", property(lambda _: pytest.fail("the dense matrix was made")))
     looks, look = [], singular_values.smallest_singular
     monkeypatch.setattr(singular_values, "smallest_singular", lambda *a: looks.append(a) or look(*a))

@@ -51,6 +51,7 @@ def test_least_solutions_are_those_of_numpy():
         assert np.max(np.abs(x - wanted)) <= 1e-13 * a.shape[1] * condition * max(np.max(np.abs(wanted)), 1e-300)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("decades", [2, 6, 9, 14])
 @pytest.mark.parametrize("n", [3, 12, 40])
 def test_singular_values_that_fall_evenly(n, decades):

@@ -114,6 +114,7 @@ def test_a_wedge_between_two_walls(angle):
     assert left_of_conditions(g @ g.T, g @ [0.0, -1.0], [0.5, 0.5], found.forces, 1) < 1e-12
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("tangents", [0, 1, 2])
 @pytest.mark.parametrize("seed", range(12))
 def test_random_problems(seed, tangents):
@@ -374,6 +375,7 @@ def collection():
         return sorted({name.split("|")[0] for name in file.files})
 
 
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("name", collection())
 def test_collected_problems(name):
     with np.load(COLLECTION) as file:

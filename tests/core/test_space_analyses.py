@@ -92,6 +92,7 @@ def arm():
     return load("arm_stop").model
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("make, t_end", [(thrown, 0.9), (hanging, 2.0), (arm, 0.22)])
 def test_variations_are_what_neighbouring_runs_give(make, t_end):
     """Through turns by more than 180 degrees, in which each Euler parameter passes zero, and through blows."""
@@ -122,6 +123,7 @@ def test_variations_are_what_neighbouring_runs_give(make, t_end):
     assert make is not thrown or turned.min() < 0.0 < turned.max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "name, parameters, t_end",
     [("chain", {"links": 3}, 3.0), ("pendulum", {}, 3.0), ("pendulum_stop", {"driven": False}, 4.0)],
@@ -142,6 +144,7 @@ def test_growth_of_variations_is_that_of_the_planar_model(name, parameters, t_en
     assert factors[1] == pytest.approx(factors[0], rel=1e-6)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "name, t_end",
     [("heavy_top", 0.3), ("free_body", 12.0), ("universal_pendulum", 3.0), ("spatial_slider_crank", 2.0),

@@ -50,7 +50,7 @@ def cross_pendulum(first, second, rates=(0.0, 0.0), **parts):
 
 def test_angles_of_a_universal_joint():
     """They are those of which the body's attitude is made, and their rates those that make its angular velocity."""
-    result = simulate(cross_pendulum(0.4, -0.7, (2.0, -1.5)), 2.0, **TIGHT)
+    result = simulate(cross_pendulum(0.4, -0.7, (2.0, -1.5)), 0.7, **TIGHT)
     for k in range(len(result.t)):
         first, second = result["joint.angle_1"][k], result["joint.angle_2"][k]
         axes = Marker3D(attitude=AxisAngles(sequence="xyz", angles=(first, second, 0.0))).axes()

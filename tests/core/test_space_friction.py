@@ -209,6 +209,7 @@ def test_box_dropped_on_a_corner_comes_to_rest(spin):
     assert min(result[f"{contact.name}.gap"].min() for contact in floor) > -1e-9
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("friction", [0.3, 0.8])
 @pytest.mark.parametrize("seed", range(12))
 def test_boxes_dropped_in_any_attitude_come_to_rest(seed, friction):

@@ -238,6 +238,7 @@ def test_five_contacts_on_a_body_without_restitution():
         Strike(seed, NewtonImpact, 5, restitution=False).check()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("most", [1, 2])
 def test_poissons_law_of_random_impacts(most):
     """One contact on a body at most, and two: where some come to rest by the blow, its losses are told all the same."""

@@ -78,6 +78,7 @@ def axes_of(attitude):
     return Marker3D(attitude=attitude).axes()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [HARD, HuntCrossley(stiffness=1e5, exponent=1.5, restitution=0.5)])
 @pytest.mark.parametrize("z", [(0.0, 0.0, 1.0), (0.3, -0.5, 0.6)])
 def test_a_hinge_strikes_its_stop_as_the_planar_one(z, law):

@@ -17,6 +17,7 @@ def test_runs_keep_energy_and_constraints(seed, method):
     assert residuals(result)[0] < 1e-9
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "seed, kinds, t, method",
     [

@@ -13,6 +13,7 @@ def last_k(run: Simulation) -> float:
     return float(run.method_arrays["choice"][0])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("method", ("ebdf", "mebdf"))
 @pytest.mark.parametrize("elements", (24, 64))
 def test_axial_waves_of_a_cable_do_not_hold_the_default(method: str, elements: int) -> None:

@@ -78,6 +78,7 @@ def test_ten_blocks():
     assert result.stats["stages"] < 6_000
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method, pulled, ends", [("ebdf", 6, 0.33), ("hht", 8, 0.37), ("irk", 5, 0.32)])
 def test_twenty_blocks_that_tip(method, pulled, ends):
     """A tower that turns about the corner of a block: contacts nearly repeat each other, and rounding must not make an

@@ -51,6 +51,7 @@ def started(model, t, method="ebdf", **options):
     return sim
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
 def test_restored_run_repeats_itself_bit_for_bit(case, method):
@@ -103,6 +104,7 @@ def free_spin():
     )
 
 
+@pytest.mark.sampled(16)
 @pytest.mark.parametrize("build", [free_spin, lambda: load("spatial_slider_crank").model], ids=["body", "slider-crank"])
 @pytest.mark.parametrize("method, options", EVERY_METHOD)
 def test_smooth_motion_in_space_goes_on_bit_for_bit(method, options, build):

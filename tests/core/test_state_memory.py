@@ -63,6 +63,7 @@ def run(name, end, method, between):
     return sim
 
 
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
 @pytest.mark.parametrize(
     "name, end",

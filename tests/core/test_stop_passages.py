@@ -107,6 +107,7 @@ def stops(kind, law, rng):
     return Model(gravity=still, bodies=[body], contacts=[contact]), lambda t: sign * (limit - measure(t)), end, depth
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "kind", ["Rope2D", "DiskInRing2D", "Rope3D", "DistanceStop3D", "SlideStop3D", "SphereInSphere3D"]
 )
@@ -131,6 +132,7 @@ def test_what_goes_a_little_beyond_its_limit_and_back_is_seen(kind):
     assert made >= 4 and wrong == []
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("space", [False, True])
 def test_angle_turns_back_just_beyond_its_limit(space):
     """omega_0 t - alpha t^2/2 goes up to omega_0^2/(2 alpha), several turns."""

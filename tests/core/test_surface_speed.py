@@ -370,6 +370,7 @@ def test_a_box_on_a_belt_with_sharp_ends():
     check_energy(result, 100.0)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("speed", np.linspace(0.5, 1.5, 8))
 def test_a_corner_leaves_the_edge_of_a_belt_in_no_time(speed):
     """The force of the rear corner, which hardly slides, jumps where the edge begins: the run gets over that."""

@@ -64,6 +64,7 @@ def scene(seed):
     return Model(bodies=bodies, contacts=contacts)
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("seed", range(24))
 def test_tumbling_bodies_keep_every_law(seed):
     """No penetration, no pulling, friction within its limit and against the sliding, ledger closed, nothing created."""

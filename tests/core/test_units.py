@@ -209,6 +209,7 @@ def swinging_point(units, law, told):
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("units, told", [(UNITS["a nanometre"], False), (UNITS["ms"], True)], ids=("nm", "ms"))
 def test_own_equations(units, told):
     for law in (NewtonImpact(restitution=0.5), KelvinVoigt(stiffness=2e3, damping=5.0)):

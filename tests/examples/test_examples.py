@@ -125,6 +125,7 @@ def test_hub_is_thrown_back_by_the_same_impulse_in_all_formulations() -> None:
     assert f["largest_energy_balance"] < 1e-5 * f["energy"]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example_draws_its_figure(name: str, tmp_path: Path) -> None:
     path = tmp_path / "figure.png"

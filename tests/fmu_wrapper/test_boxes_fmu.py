@@ -36,6 +36,7 @@ def test_the_bits_of_a_run_in_this_process(tmp_path):
     assert 0.15 < lowest < 0.35  # it has fallen on the other, and not through it
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_without_python_the_same_bits(version, tmp_path):

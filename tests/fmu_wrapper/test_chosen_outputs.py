@@ -18,6 +18,7 @@ def outputs(path):
     return [v.name for v in fmpy.read_model_description(path).modelVariables if v.causality == "output"]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_only_chosen_outputs_are_there_and_their_values_are_the_same(version, tmp_path):
     settings = {"t_end": 0.6, "communication_step": 0.1}
@@ -45,6 +46,7 @@ def test_a_protected_table_tells_neither_numbers_nor_laws():
     assert [v.reference for v in table.variables] == [1, 2, 3, 4] and not table.by_name["ball.y"].description
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.skipif(LIBRARY is None, reason="needs the library of machine code (tlismni.core.aot)")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_a_protected_fmu_runs_and_holds_no_words_of_the_model(version, tmp_path):

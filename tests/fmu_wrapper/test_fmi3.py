@@ -269,6 +269,7 @@ def test_derivatives(host):
 # errors
 
 
+@pytest.mark.sampled(33)
 @pytest.mark.parametrize(
     ("call", "message"),
     [

@@ -92,6 +92,7 @@ def simulation_of(scenario):
     return Simulation(scenario.model, scenario.method, scenario.rtol, scenario.atol, **scenario.options)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "name", ["bouncing_ball", "double_pendulum_wall", "newtons_cradle", "slider_crank_stop", "stick_slip"]
 )
@@ -268,6 +269,7 @@ def test_a_host_without_python_hears_what_is_wrong(host, ball):
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("event_mode", [False, True])
 def test_steps_that_the_binary_makes_alone_are_those_of_the_slave(tmp_path, event_mode):
     """On a grid far finer than the solver's steps most of them never reach Python: nothing may tell the two apart."""

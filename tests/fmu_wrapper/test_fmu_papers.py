@@ -13,6 +13,7 @@ NATIVE = pytest.param(
 LICENCE = "documentation/licenses/license.txt"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("native", [False, NATIVE])
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_papers(native, version, tmp_path):

@@ -154,6 +154,7 @@ print(json.dumps([[x.hex() for x in row] for row in fmu.step(instance, 5, STEPS)
     assert json.loads(done.stdout) == [[x.hex() for x in row] for row in rows]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["pendulum_stop", "bouncing_ball"])
 def test_scenarios_of_the_catalogue_by_the_command_of_fmpy(tmp_path, name):
     scenario = load(name)

@@ -47,6 +47,7 @@ def instance(unzipped, messages, guid=None, fmi_type=1, name=b"it", logger=True)
     return fmu
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.skipif(CC is None, reason="needs a C compiler")
 @pytest.mark.parametrize("standard", ["c11", "c17"])
 def test_compiles_without_warnings(tmp_path, standard):

@@ -39,6 +39,7 @@ def refused(slave, data):
     assert len(str(caught.value)) > 40 and slave.snapshot().data == before
 
 
+@pytest.mark.sampled(30)
 @pytest.mark.parametrize("name", ["phase", "start_time", "stop_time", "time", "applied", "identity", "format"])
 @pytest.mark.parametrize("value", ["x", -1e9, True, [], [[1.0, 2.0]], {"a": 1}, float("nan"), 10**400, "failed"])
 def test_heads(stored, name, value):

@@ -34,6 +34,7 @@ def test_a_step_is_the_map_of_theory(algorithm, settings, weight):
     assert len(found.t) == steps + 1 and found.t[-1] == steps * h
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("algorithm", "settings", "order"),
     [
@@ -70,6 +71,7 @@ def added_mass(extra):
     return [of_source("a", model, **EXACT)], [link]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
 def test_algebraic_loop_is_named_and_solved(algorithm):
     extra, t_end = 3.0, 2.0

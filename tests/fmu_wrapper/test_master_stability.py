@@ -13,6 +13,7 @@ LOOSE = {"method": "irk", "rtol": 1e-8, "atol": 1e-11}
 """Where growth or a step control is looked at, not the coupling alone."""
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("algorithm", "weight"), [("jacobi", None), ("iterated", 1.0)])
 def test_stability_limit(algorithm, weight):
     """Inputs that lag (Jacobi) or lead (end) by h/2 feed energy in, more than the dampers take beyond a step."""
@@ -26,6 +27,7 @@ def test_stability_limit(algorithm, weight):
         assert (late > early) == grows
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])
 def test_what_lags_on_one_side_and_leads_on_the_other_is_stable_with_any_step(algorithm):
     """Undamped, with steps of up to two periods: the eigenvalues of the map stay on the unit circle."""
@@ -50,6 +52,7 @@ def test_the_mean_of_both_ends_keeps_the_energy_that_held_values_feed():
     assert abs(gains["newton"]) < 0.02
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("algorithm", "estimate"), [("gauss-seidel", "doubling"), ("newton", "doubling"), ("iterated", "iteration")]
 )

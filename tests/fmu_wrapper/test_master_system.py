@@ -70,6 +70,7 @@ def test_a_file_is_the_run_that_it_describes(folder):
     assert units["a.mass.x"] == "m" and units["a.force"] == "N"
 
 
+@pytest.mark.sampled(2)
 @needs_shim
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize("algorithm", ["gauss-seidel", "newton"])

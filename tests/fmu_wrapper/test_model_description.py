@@ -243,6 +243,7 @@ def compare_nominals(name, tmp_path):
     assert seen >= 5
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["rod_wall", "stick_slip", "sphere_beam", "split_wall", "hub_beam_stop"])
 def test_nominal_values_are_near_what_comes(name, tmp_path):
     compare_nominals(name, tmp_path)
@@ -371,6 +372,7 @@ def test_without_pillow_there_is_no_icon_but_all_else(tmp_path, monkeypatch, cap
 # checkers
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_fmutool_finds_nothing_to_complain_about(tmp_path, caplog, version):
     checker = pytest.importorskip("fmu_manipulation_toolbox.checker")
@@ -387,6 +389,7 @@ SAMPLE = random.Random(core_digest()).sample(names(), (len(names()) + 1) // 2)
 """Half of the scenarios, others whenever the core changes."""
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("name", "version"),
     [

@@ -30,6 +30,7 @@ CC = shutil.which("cc")
 WAYS = [(False, False), (False, True), (True, False), (True, True)]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("name", "version"),
     [
@@ -61,6 +62,7 @@ def test_the_same_bits_as_with_python(name, version, tmp_path):
             assert sides[0].read() == sides[1].read(), k
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("way", WAYS)
 def test_events_and_early_return(way, tmp_path):
     event_mode, early_return = way
@@ -82,6 +84,7 @@ def test_events_and_early_return(way, tmp_path):
     assert (any(e[2] for e in ends), any(e[0] for e in ends)) == (early_return, event_mode and early_return)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_going_back_here_and_in_another_instance(version, tmp_path):
     pair = scenario_pair("slider_crank_stop", tmp_path, version)
@@ -116,6 +119,7 @@ def test_going_back_here_and_in_another_instance(version, tmp_path):
         getattr(here.fmu, read)(bytes(data))
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_parameters_are_set_before_the_run(version, tmp_path):
     """The bits of the FMU with Python; a reset and a stored state take them along."""
@@ -152,6 +156,7 @@ def test_what_is_fixed_is_named(tmp_path, caplog):
     assert found["mass"].variability == "constant" and found["solver.rtol"].variability == "constant"
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_derivatives_are_those_of_the_fmu_with_python(version, tmp_path):
     pair = scenario_pair("slider_crank_stop", tmp_path, version)

@@ -41,6 +41,7 @@ def program(tmp_path_factory):
     return made
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["slider_crank_stop", "woodpecker", "chain"])
 def test_random_calls(program, name, tmp_path):
     path = export_fmu(load(name), tmp_path / "x.fmu", "3.0", native=True)

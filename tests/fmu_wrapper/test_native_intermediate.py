@@ -39,6 +39,7 @@ def rows(pair, number, count, end):
     return found, [] if listener is None else listener.seen
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name, end", [("heavy_top", 0.5), ("rod_wall", 1e-3), ("bouncing_ball", 1.5), ("chain", 0.3)])
 def test_outputs_are_those_of_the_present_time(name, end, tmp_path):
     pair = scenario_pair(name, tmp_path, "3.0")

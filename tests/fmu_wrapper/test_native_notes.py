@@ -25,6 +25,7 @@ def exported(tmp_path_factory):
     return unzipped, fmpy.read_model_description(unzipped), notes
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("first, second", [("length", "start_angle"), ("start_angle", "length")])
 def test_the_error_names_the_parameter_that_excludes(exported, first, second):
     said = []

@@ -51,10 +51,10 @@ def test_two_processes_export_the_same_bytes(name, version, tmp_path, monkeypatc
 
 def test_a_state_goes_to_the_fmu_of_another_export(tmp_path):
     """Of the same model, exported at another time."""
-    here, there = tmp_path / "slider_crank_stop.fmu", tmp_path / "there" / "slider_crank_stop.fmu"
+    here, there = tmp_path / "bouncing_ball.fmu", tmp_path / "there" / "bouncing_ball.fmu"
     there.parent.mkdir()
-    export_fmu(load("slider_crank_stop"), here, "3.0", native=True)
-    exported_elsewhere("slider_crank_stop", there, "3.0")
+    export_fmu(load("bouncing_ball"), here, "3.0", native=True)
+    exported_elsewhere("bouncing_ball", there, "3.0")
     sides = []
     for path in (here, there):
         unzipped = fmpy.extract(str(path), unzipdir=str(path.parent / "unzipped"))

@@ -23,6 +23,7 @@ def numbers(side):
     return np.array((side.fmu.getFloat64 if side.three else side.fmu.getReal)(side.reals))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("parameter, value", [("mass", 3.3), ("length", 0.37), ("gravity", 1.62), ("mass", 0.02)])
 def test_one_parameter_gives_the_bits_of_the_fmu_with_python(stop, parameter, value):
     sides = stop.instances()
@@ -107,6 +108,7 @@ def pushed(starts):
     )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize("start", [0.2, 1.5, -3.0])
 def test_another_start_time(version, start, tmp_path):
@@ -128,6 +130,7 @@ def test_another_start_time(version, start, tmp_path):
     assert speed == pytest.approx(1.5 * max(0.0, t - max(0.5, start)), abs=1e-9)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_turns_of_a_driven_hinge_at_another_start_time(version, tmp_path):
     """The driver says how many whole turns there are at the start; the spring holds each of them."""

@@ -39,6 +39,7 @@ def ball(turning, contact):
     return Model(name="ball_that_rolls_out", gravity=(0.0, 0.0, -9.81), bodies=[body], contacts=[touch])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("contact", [HARD, SOFT], ids=["constraint", "force"])
 def test_a_ball_that_rolls_out(contact, tmp_path):
     turning = TurningFriction(rolling=0.004, spinning=0.002, transition_speed=1e-2)

@@ -78,6 +78,7 @@ def probes(path):
     return found
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_null_is_an_error_with_a_line(tmp_path, version):
     path = export_fmu(ball_model(), tmp_path / "ball.fmu", version)

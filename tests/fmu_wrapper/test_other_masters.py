@@ -70,6 +70,7 @@ def ecos(tmp_path_factory):
     return run
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_ecos_through_an_impact(ecos, tmp_path, version):
     scenario = load("pendulum_stop")
@@ -149,6 +150,7 @@ def test_an_ssp_that_we_write_runs_in_fmpy(tmp_path):
     np.testing.assert_array_equal(found["b.force"], found["a.mass.x"])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_an_ssp_that_we_write_runs_in_ecos(ecos, tmp_path, version):
     path = write_ssp(system(tmp_path, version), tmp_path / "halves.ssp", tmp_path)

@@ -49,6 +49,7 @@ def calls(fmu, vr, states, rng):
     return name, table[name]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("kind", ["in process", "binary"])
 def test_random_calls(fake_fmu, tmp_path, messages, kind, seed):

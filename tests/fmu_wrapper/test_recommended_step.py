@@ -82,6 +82,7 @@ def test_a_blow_takes_as_long_as_in_a_run():
     assert duration == pytest.approx(math.pi / 2.9432751843 * (first[1] - first[0]), rel=0.01)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_the_fmu_recommends_it(tmp_path, version):
     scenario = load("split_wall")

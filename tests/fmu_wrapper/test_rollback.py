@@ -46,6 +46,7 @@ def continue_all(unzipped, folder):
     print(json.dumps(rows))
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("case", CASES)
 def test_rollback_at_random_instants(case, tmp_path):
     fmu = fmu_of(case, tmp_path)

@@ -205,6 +205,7 @@ def count_calls(monkeypatch, kind, name):
     return calls
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.skipif(CC is None, reason="needs a C compiler")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_a_binary_of_another_layout_shares_nothing_and_answers_the_same(tmp_path, monkeypatch, version):

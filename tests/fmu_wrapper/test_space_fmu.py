@@ -55,6 +55,7 @@ def outputs(side):
     return {by_reference[k]: value for k, value in zip(side.reals, found, strict=True)}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in SAMPLE else [pytest.mark.full]) for n in SPATIAL])
 def test_the_bits_of_a_run_in_this_process(name, tmp_path):
     scenario, version = load(name), "2.0" if len(name) % 2 else "3.0"
@@ -84,6 +85,7 @@ def test_the_bits_of_a_run_in_this_process(name, tmp_path):
         assert np.array([slave[n] for n in found]).tobytes() == np.array(list(found.values())).tobytes()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", STRIKING)
 def test_steps_end_at_the_events_of_a_run(name, tmp_path):
     """FMI 3.0 with early return: to the bit the instants of a run that knows of no communication points."""

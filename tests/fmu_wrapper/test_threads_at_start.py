@@ -62,6 +62,7 @@ def alone(fmu):
     return instance.getReal([fmu.vr["ball.y"]])[0]
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("count", [1, 3])
 def test_all_instances_are_made_and_step(host, fmus, count):
     """One Python is started, its paths are extended once, and each instance gives what it gives alone."""

@@ -13,6 +13,7 @@ def run(name, **parameters):
     return s, simulate(s.model, s.t_end, s.method, s.rtol, s.atol, **s.options)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["cantilever", "cable_pendulum"])
 def test_the_tip_converges_with_the_elements(name):
     """At 0.3 s, before waves of all lengths have mixed: each mesh comes nearer to the finest one, with damping with the

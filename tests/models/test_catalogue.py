@@ -76,6 +76,7 @@ def test_every_scenario_starts_with_closed_joints_at_rest_or_consistent_speed(na
             assert np.allclose([nx * dx + ny * dy, nx * dvx + ny * dvy, turning], 0.0, atol=1e-14)
 
 
+@pytest.mark.sampled(40)
 @pytest.mark.parametrize("name", WITH_CONTACT)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_every_law_starts_with_an_open_gap(name: str, law: str) -> None:

@@ -85,6 +85,7 @@ def off(sim, found, wanted, kept, least):
     return worst
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", sorted(set(names()) - MOTIONS))
 def test_along_inputs_and_in_time(name):
     scenario = load(name)

@@ -19,6 +19,7 @@ def run(name: str, tolerance: float = 1.0, **parameters: Any) -> Result:
 # ---- sphere_beam ----------------------------------------
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "parameters", [{}, {"formulation": "floating", "modes": 8}], ids=["modes", "floating frame and material point"]
 )
@@ -70,6 +71,7 @@ def moment_of_momentum(formulation: str, contact: str, sample: int) -> float:
     return float(total)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("formulation, contact", VARIANTS)
 def test_hub_with_beam_keeps_its_balances(formulation: str, contact: str) -> None:
     """Energy; moment of momentum about the axle against the moment of the stop's impulse, which acts at the tip."""
@@ -107,6 +109,7 @@ def test_all_variants_agree_on_the_impulse() -> None:
     assert 0.8 < np.mean(impulses) / (2.0 * rigid * 2.0 / 0.55) < 1.0
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("formulation, parameter", [("floating", "modes"), ("ancf", "elements")])
 def test_impulse_converges_and_the_impact_loses_ever_less(formulation: str, parameter: str) -> None:
     """The mass at the tip that an impact stops goes to zero as the beam is resolved, and its energy with it."""

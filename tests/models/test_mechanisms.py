@@ -156,6 +156,7 @@ def test_rigid_slider_crank_follows_its_crank_angle(angle: float, rate: float) -
     assert np.abs(result["energy.balance"]).max() < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("damping", [0.0, 20.0])
 def test_elastic_slider_crank_follows_minimal_coordinates(damping: float) -> None:
     times = np.linspace(0.0, 0.2, 41)

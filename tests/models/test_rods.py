@@ -110,6 +110,7 @@ def test_equal_rods_exchange_their_velocities() -> None:
     assert result["contact.impulse"][-1] / MOMENTUM == pytest.approx(1.0, rel=0.01)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("mass_ratio, end", [(1.0, 3.0677), (2.0, 4.7086), (4.0, 5.8996), (6.0, 7.4076)])
 def test_mass_on_a_rod(mass_ratio: float, end: float) -> None:
     """Near its end the force grazes zero: contact has ended when mass and rod stay apart for more than a few of the

@@ -183,6 +183,7 @@ def test_dropped_box_with_friction_of_a_force_law_comes_to_rest():
     assert np.ptp(result["energy.balance"]) < 1e-6
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("law", ["newton", "hunt_crossley"])
 def test_tippe_top_turns_over_and_rises_on_its_stem(law):
     """On a point Jellett's quantity of the sphere that touches alone is constant, energy falls, the centre of mass

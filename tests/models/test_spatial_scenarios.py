@@ -43,6 +43,7 @@ def check_levels(result, most=1e-10):
     assert np.abs(result["residual.acceleration"]).max() < most * max(1.0, np.abs(result.a).max())
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "adams"])
 def test_heavy_top(method):
     result = run("heavy_top", [*HEAVY_TOP], method)
@@ -106,6 +107,7 @@ def test_free_body_over_two_periods_by_adams_formulas():
     assert np.abs(found - exact)[[2000, 4000]].max() < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method", ["ebdf", "irk", "adams"])
 def test_spatial_slider_crank(method):
     result = run("spatial_slider_crank", [*CRANK], method, rtol=1e-12, atol=1e-14)

@@ -1,6 +1,7 @@
 """The tippe top on its patch: Newton's and Euler's equations by scipy, with the ellipsoid and the patch's integral."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -62,6 +63,7 @@ def test_the_patchs_integral(u):
         assert (m == pytest.approx(n, rel=1e-3)) if way < 1.0 else (f == pytest.approx(g, rel=1e-6))
 
 
+@cache
 def course(friction, until):
     """Axis, angular velocity and velocity along the floor of the top on its large sphere; it ends where the stem
     touches."""

@@ -43,6 +43,7 @@ def monkeypatch_module():
     patch.undo()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(("name", "index"), EQUATIONS)
 def test_peers_equations(bench, name, index):
     """They hold at our solution, and their Jacobian is the derivative of their residual."""

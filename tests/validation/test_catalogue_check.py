@@ -75,6 +75,7 @@ def test_every_scenario_has_a_case_that_can_be_compared_and_every_case_a_scenari
 
 
 @needs_exudyn
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("case", [marked(c) for c in FIRST if c.scenario not in FLUCTUATING])
 def test_coarse_cross_check(case: Case) -> None:
     found = run_case(case, coarse=True)
@@ -101,7 +102,7 @@ def test_full_cross_check(case: Case) -> None:
 def test_the_overview_names_all_cases_and_links_their_pages(tmp_path: Path) -> None:
     pytest.importorskip("jinja2")
     pytest.importorskip("matplotlib")
-    found = crosscheck_all(tmp_path, scenarios=["pendulum", "newtons_cradle"], coarse=True)
+    found = crosscheck_all(tmp_path, scenarios=["pendulum", "split_wall"], coarse=True)
     assert found.ok and found.report is not None
     assert {o.verdict for o in found.outcomes} == {"agree", "not comparable"}
     text = found.report.read_text(encoding="utf-8")
@@ -110,7 +111,7 @@ def test_the_overview_names_all_cases_and_links_their_pages(tmp_path: Path) -> N
             assert f'href="{outcome.case.name}_crosscheck.html"' in text
             assert (tmp_path / f"{outcome.case.name}_crosscheck.html").exists()
         else:
-            assert "choice of the impact law" in text
+            assert "of a mechanism, whose inputs come from the other half" in text
     numbers = json.loads((tmp_path / "overview.json").read_text(encoding="utf-8"))
     assert len(numbers["cases"]) == len(found.outcomes)
     assert numbers["machine"]["versions"]["exudyn"].startswith("1.13")

@@ -66,16 +66,19 @@ def by_force():
         yield pytest.param(law, start, id=f"{law.type}-{start}", marks=[] if (i + k) % 3 == 0 else [pytest.mark.full])
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("law, start", list(by_force()))
 def test_by_force(law, start):
     compared(ball(law, **STARTS[start]))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law, start", list(product(HARD, [s for s in STARTS if "pressed" not in s])))
 def test_as_a_constraint(law, start):
     compared(ball(law, **STARTS[start]), step=1e-4)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [HARD[1], FORCES[1], FORCES[3]], ids=lambda law: law.type)
 @pytest.mark.parametrize("start", ["laid", "touching, without weight"])
 def test_over_the_whole_run(law, start):

@@ -150,6 +150,7 @@ MOVING = (
 )
 
 
+@pytest.mark.sampled(2)
 @needs_exudyn
 @pytest.mark.parametrize("law", [Hertz(stiffness=K), KelvinVoigt(stiffness=K, damping=300.0)])
 @pytest.mark.parametrize("shape", ["half-plane", "disk"])

@@ -27,6 +27,7 @@ def verdicts(found: CrossCheck) -> dict[str, str]:
     return {r.quantity: r.verdict for r in found.rows}
 
 
+@pytest.mark.sampled(2)
 @needs_exudyn
 @pytest.mark.parametrize(
     "law",
@@ -39,6 +40,7 @@ def test_every_force_law_agrees(law: str) -> None:
     assert law == "kelvin_voigt" or not found.undecided, verdicts(found)
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("restitution", [1.0, 0.5])
 def test_constraint_contact_is_the_penalty_limit(restitution: float) -> None:
@@ -74,6 +76,7 @@ def test_a_wrong_inertia_is_found_in_motion() -> None:
     assert not found.ok
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("law", ["newton", "hunt_crossley"])
 def test_one_per_cent_of_restitution_is_found(law: str) -> None:

@@ -64,6 +64,7 @@ def cantilever(**cable: Any) -> Model:
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("cable", [{}, {"integration": "reduced"}, {"reference_curvature": 0.4}])
 def test_a_cantilever_with_points_clamp_and_load_follows_the_solver(cable: dict[str, Any]) -> None:
     model = cantilever(**cable)

@@ -69,6 +69,7 @@ def test_six_impacts_at_tight_tolerance_agree_to_1e_10(method: str, options: dic
     assert np.abs([result[name][-1] for name in NAMES] - END).max() < 1e-8
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("method, options", [("ebdf", {"k": 6}), ("irk", {"tableau": "gauss3"})])
 def test_plastic_impacts_hold_the_tip_at_the_wall_until_its_force_vanishes(method: str, options: dict) -> None:
     scenario = load("double_pendulum_wall", restitution=0.0, wall=0.2)
@@ -101,6 +102,7 @@ def test_error_falls_with_the_tolerance_through_all_impacts(method: str, options
 # ---- fixed steps
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "method, options, order, counts",
     [

@@ -162,6 +162,7 @@ def test_the_claims(study: IterationStudy) -> None:
     assert study.to_dict()["claims"][2]["verdict"] == third.verdict
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("methods, claims", [(["hht"], ["C1"]), (["bdf"], ["C2"]), (["irk"], [])])
 def test_claims_on_methods_that_did_not_run_are_not_judged(methods: list[str], claims: list[str]) -> None:
     study = iteration_study(["chain"], methods, tolerances=(1e-3,), quick=True)

@@ -20,6 +20,7 @@ def enough(case: OrderCase) -> tuple[int, ...]:
     return COUNTS if case.order is not None and case.order > 8 else COUNTS[::2]
 
 
+@pytest.mark.sampled(27)
 @pytest.mark.parametrize(
     "case, counts",
     [

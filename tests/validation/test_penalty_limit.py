@@ -63,6 +63,7 @@ def test_exudyn_writes_nothing_on_stdout(capfd: pytest.CaptureFixture[str]) -> N
     assert capfd.readouterr().out == ""
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize(("offset", "alone"), [(0.0, False), (0.05, True)])
 def test_a_blow_that_two_contacts_share_is_not_laid_on_one_constraint(offset: float, alone: bool) -> None:

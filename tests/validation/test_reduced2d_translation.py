@@ -100,6 +100,7 @@ FLIGHT = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("rotary", [False, True])
 def test_a_body_that_flies_and_vibrates_follows_the_solver(rotary: bool) -> None:
@@ -184,6 +185,7 @@ def test_joints_and_forces_on_its_frame_follow_the_solver() -> None:
 HERTZ, TSUJI = Hertz(stiffness=2e4), Tsuji(stiffness=2e4, damping=0.1)
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize(
     ("law", "place"),

@@ -60,6 +60,7 @@ def four_bar(tilt=None):
     return Model(bodies=bars, joints=joints, gravity=gravity)
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("tilt", [None, RotationVector(vector=(0.5, -0.3, 0.4))])
 def test_a_plane_loop_of_hinges_in_space_leaves_three_axes_free(tilt):

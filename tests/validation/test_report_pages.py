@@ -41,6 +41,7 @@ class Tree(HTMLParser):
         assert self.open and self.open.pop() == tag, tag
 
 
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize("plotly", [True, False])
 def test_a_page_is_whole_and_needs_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, plotly: bool) -> None:

@@ -140,6 +140,7 @@ EQUATIONS = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("joint", EQUATIONS, ids=lambda j: j.type)
 def test_an_equation_on_a_carrier_that_turns(joint: Any) -> None:
     found, ours, theirs = differences(on_pins(joints=(joint,)), 0.5, 5e-4)
@@ -218,6 +219,7 @@ def shapes(kind: str) -> dict[str, Any]:
     }[kind]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rubs", [False, True])
 @pytest.mark.parametrize("kind", ["ring", "box", "polygon"])
 def test_a_disk_in_a_ring_on_a_box_on_a_polygon(kind: str, rubs: bool) -> None:

@@ -75,6 +75,7 @@ def on_a_point_mass():
     return Model(bodies=[ball("one", (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (1.0, 2.0, 3.0)), mass], contacts=[contact])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "model, names",
     [(on_a_turning_board, ("board", "ball")), (two_balls, ("one", "two")), (on_a_point_mass, ("one", "two"))],

@@ -60,14 +60,14 @@ def test_a_driver_turns_a_hinge_between_bodies_that_fly() -> None:
     bodies, at = pair(about=5.0)
     driver = AngleDriver3D(name="driver", **at, angle=Polynomial(coefficients=(0.0, 5.0, 10.0)))
     model = Model(bodies=bodies, joints=[Revolute3D(name="hinge", **at), driver])
-    agree(model, (*MOTION, "hinge.angle", "one.angular_velocity_x"), 0.6, 1.5e-3)
+    agree(model, (*MOTION, "hinge.angle", "one.angular_velocity_x"), 0.6, 3e-3)
 
 
 def test_a_driver_moves_a_slider_between_bodies_that_fly() -> None:
     bodies, at = pair(along=0.5)
     driver = PositionDriver3D(name="driver", **at, position=Polynomial(coefficients=(0.0, 0.5, 1.0)))
     model = Model(bodies=bodies, joints=[Prismatic3D(name="slider", **at), driver])
-    agree(model, (*MOTION, "slider.position", "one.angular_velocity_x"), 0.5, 1.25e-3)
+    agree(model, (*MOTION, "slider.position", "one.angular_velocity_x"), 0.5, 2.5e-3)
 
 
 def test_a_screw_between_bodies_that_fly() -> None:
@@ -78,7 +78,7 @@ def test_a_screw_between_bodies_that_fly() -> None:
     )  # fmt: skip
     joints = [Cylindrical3D(name="sleeve", **at), Screw3D(name="screw", **at, lead=0.12)]
     model = Model(bodies=bodies, joints=joints, forces=[pull])
-    agree(model, (*MOTION, "sleeve.angle", "screw.angle", "screw.position"), 0.5, 1.25e-3)
+    agree(model, (*MOTION, "sleeve.angle", "screw.angle", "screw.position"), 0.5, 2.5e-3)
 
 
 def test_a_rod_that_is_driven_between_bodies_that_fly() -> None:
@@ -93,7 +93,7 @@ def test_a_rod_that_is_driven_between_bodies_that_fly() -> None:
     ]
     rate = float(way @ (speeds[1] - speeds[0])) / length
     rod = Distance3D(name="rod", **at, length=Polynomial(coefficients=(length, rate, 2.0)))
-    agree(Model(bodies=bodies, joints=[rod]), (*MOTION, "two.angular_velocity_y"), 0.5, 1.25e-3)
+    agree(Model(bodies=bodies, joints=[rod]), (*MOTION, "two.angular_velocity_y"), 0.5, 2.5e-3)
 
 
 def test_a_rod_with_a_hinge_at_one_end() -> None:
@@ -114,7 +114,7 @@ def test_a_rod_with_a_hinge_at_one_end() -> None:
         ),
     ]
     model = Model(bodies=[base, weight], joints=joints, gravity=(0.0, 0.0, -9.81))
-    agree(model, ("column.angle", "weight.x", "weight.y", "weight.z"), 0.5, 1.25e-3)
+    agree(model, ("column.angle", "weight.x", "weight.y", "weight.z"), 0.5, 2.5e-3)
 
 
 def test_a_homokinetic_joint_that_bends() -> None:
@@ -137,7 +137,7 @@ def test_a_homokinetic_joint_that_bends() -> None:
     model = Model(bodies=bodies, joints=joints, gravity=(0.0, 1.0, -9.81))
     tilt = simulate(model, 0.4, "irk", 1e-8, 1e-10)
     assert max(abs(tilt["two.x"])) > 0.05
-    agree(model, ("shaft.angle", "two.x", "two.y", "two.z"), 0.4, 1e-3)
+    agree(model, ("shaft.angle", "two.x", "two.y", "two.z"), 0.4, 2e-3)
 
 
 def same_force(model: Model, channel: str) -> None:
@@ -191,7 +191,7 @@ def test_a_rack_on_a_wheel() -> None:
         RackAndPinion3D(name="mesh", frame=frame, wheel=on[0], guide=guide, rack=on[1], radius=0.15),
     ]
     model = Model(bodies=[wheel, rack], joints=joints, gravity=(0.0, 0.0, -9.81))
-    agree(model, ("hinge.angle", "slider.position", "rack.x"), 1.0, 2.5e-3)
+    agree(model, ("hinge.angle", "slider.position", "rack.x"), 1.0, 5e-3)
     same_force(model, "mesh.tooth_force")
 
 

@@ -61,6 +61,7 @@ def on_a_rope():
     return Model(bodies=bodies, contacts=[Rope3D(name="stop", **ends, length=length, law=Hertz(stiffness=1e6))])
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("model", [on_a_hinge, on_a_sleeve, on_a_rope])
 def test_a_blow_by_force_goes_the_same_way(model):
     given, end = model(), 0.03

@@ -58,6 +58,7 @@ RUNS: list[tuple[str, dict[str, Any], float | None]] = [
 ]
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name, parameters, t_end", RUNS, ids=lambda x: x if isinstance(x, str) else "")
 def test_the_solver_follows_the_third_opinion(name: str, parameters: dict[str, Any], t_end: float | None) -> None:
     scenario = load(name, **parameters)
@@ -109,6 +110,7 @@ def test_a_linear_spring_as_contact_takes_half_its_period() -> None:
     assert blow.impulse == pytest.approx(2.0 * speed, rel=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("ratio, ends", [(1.0, 3.0677), (2.0, 4.7086), (4.0, 5.8996), (6.0, 7.4076)])
 def test_a_mass_leaves_a_struck_rod_when_st_venant_says(ratio: float, ends: float) -> None:
     """In units of L/c: Goldsmith, Impact (1960), 3.4."""

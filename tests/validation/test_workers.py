@@ -36,7 +36,7 @@ def job(item: str, tell: Callable[[str], None]) -> str:
 
 def test_a_process_that_ends_or_hangs_takes_its_own_item_only() -> None:
     told: list[tuple[str, str]] = []
-    pool: Workers[str, str] = Workers(job, 2, lambda item, code, seconds: f"{item}: {code}", limit=5.0)
+    pool: Workers[str, str] = Workers(job, 2, lambda item, code, seconds: f"{item}: {code}", limit=2.0)
     found = dict(pool.run(["a", "crash", "hang", "b", "c"], lambda item, text: told.append((item, text))))
     assert found == {"a": "A", "b": "B", "c": "C", "crash": "crash: 3", "hang": "hang: None"}
     assert {item for item, text in told if text == f"begun {item}"} == set(found)
@@ -90,6 +90,7 @@ def test_the_limit_of_meshes_finds_the_order_that_they_show(order: float) -> Non
         assert limit == changing[-1] and bar >= np.abs(np.diff(changing)).max()
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("coarsest", [10, 25])
 def test_the_bars_of_meshes_hold_the_waves_that_no_mesh_resolves(coarsest: int) -> None:
     # the force EA v/c for 2 L/c (d'Alembert); three meshes whose changes pass zero by chance look converged

@@ -22,6 +22,7 @@ def motion(name: str) -> np.ndarray:
     return next(f.motion for f in swing()[1].scene.frames if f.name == name)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("contact, body, radius", [
     ("ledge", "ball", 0.12), ("profile", "rider", 0.1), ("catch", "drop", 0.08),
 ])  # fmt: skip

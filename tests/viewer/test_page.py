@@ -43,6 +43,7 @@ def test_a_notebook_shows_it_in_a_frame() -> None:
     assert text.startswith("<iframe srcdoc=") and text.count("<") == 2
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desktop", "phone"])
 def test_in_a_browser_it_plays_and_shows_what_the_result_says(tmp_path: Path, size: tuple[int, int]) -> None:
     result = run("pendulum_stop")
@@ -96,6 +97,7 @@ def test_in_a_browser_it_plays_and_shows_what_the_result_says(tmp_path: Path, si
     assert found["wide"] <= 0
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["hub_beam_stop", "rod_wall", "woodpecker"])
 def test_other_kinds_of_scenes_work_in_a_browser(tmp_path: Path, name: str) -> None:
     run(name).animate(tmp_path / "x.html")

@@ -230,7 +230,7 @@ def test_stress_is_that_of_the_outermost_fibre() -> None:
 
 def test_the_page_of_a_large_model_stays_small() -> None:
     chain = load("chain", links=300)
-    result = simulate(chain.model, 0.05, "hht", step=1e-4)
+    result = simulate(chain.model, 0.02, "hht", step=1e-4)
     animation = animate(result)
     assert 60 <= len(animation.scene.t) < 1500
     assert len(animation.html()) < 20e6

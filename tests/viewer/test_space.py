@@ -257,6 +257,7 @@ def test_a_film_of_a_box_shows_three_of_its_faces(tmp_path: Path) -> None:
     assert np.sum(counts > 60) >= 3, (colours, counts)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desktop", "phone"])
 def test_in_a_browser_solids_are_drawn_where_the_result_says(tmp_path: Path, size: tuple[int, int]) -> None:
     result = simulate(bodies_in_space(), 0.5, rtol=1e-8)
