@@ -14,6 +14,6 @@ def sources(incomplete: str) -> list[str]:
 
 def methods(incomplete: str) -> list[str]:
     """Methods that begin so."""
-    from ..core import METHODS
+    from ..core.methods.automatic import METHOD_NAMES
 
-    return [name for name in METHODS if name.startswith(incomplete)]
+    return [name for name in METHOD_NAMES if name.startswith(incomplete)]

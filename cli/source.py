@@ -8,7 +8,8 @@ from typing import Any
 
 import typer
 
-from ..core import METHODS, Model, ModelError, Simulation
+from ..core import Model, ModelError, Simulation
+from ..core.methods.automatic import METHOD_NAMES, described
 from ..models import Scenario, load
 from ..models.registry import entry_of
 from .options import pairs, value_of
@@ -129,8 +130,8 @@ def _interesting_channels(model: Model) -> tuple[str, ...]:
 
 
 def _options(method: str, given: dict[str, str]) -> dict[str, Any]:
-    if method in METHODS:  # the core names the methods that there are
-        known = {*METHODS[method].options, *RUN_OPTIONS}
+    if method in METHOD_NAMES:  # the core names the methods that there are
+        known = {*described(method).options, *RUN_OPTIONS}
         unknown = sorted(set(given) - known)
         if unknown:
             raise ModelError(f"method '{method}' has no option {unknown}; there are {sorted(known)}")

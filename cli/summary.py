@@ -22,7 +22,7 @@ def summarise(scenario: Scenario, result: Result) -> dict[str, Any]:
         "scenario": scenario.name,
         "parameters": dict(scenario.parameters),
         "t_end": scenario.t_end,
-        "solver": solver_settings(scenario),
+        "solver": solver_settings(scenario) | ({"chosen": result.method_chosen} if result.method_chosen else {}),
         "samples": len(result),
         "events": [event.to_dict() for event in result.events],
         "event_units": event_units(result),
@@ -63,6 +63,8 @@ def print_summary(figures: dict[str, Any]) -> None:
         f"{figures['scenario']}: 0 to {number(figures['t_end'])} s with {solver['method']} ({control}{options})\n",
         markup=False,
     )
+    if "chosen" in solver:
+        stdout().print(f"auto took {solver['chosen']}\n", markup=False)
     _print_events(figures["events"], figures["event_units"])
     units = dict(LEVELS) | {"velocity_increment": "m/s"}
     print_table(

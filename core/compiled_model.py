@@ -19,10 +19,13 @@ from .simulation.blueprint import Blueprint, Unstarted, can_be_copied, take_numb
 from .simulation.simulation import Simulation
 
 Numbers = Mapping[str, float]
+_POSITIONAL = ("method", "rtol", "atol")
+"""Arguments of `Simulation` after the system that may be given without their names."""
 
 
 class CompiledModel:
-    """What runs of one system with one method share. `compile_model` makes it.
+    """What runs of one system with one method share. `compile_model` makes it. `method="auto"` is chosen once, for the
+    system as it is given here: variants are solved with the same.
 
     Runs of a `Model` share its tables. Of an `EquationSystem`, whose functions work in the memory of one run, each is
     built anew: the same results, at the cost of `Simulation`.
@@ -37,8 +40,9 @@ class CompiledModel:
 
     @compile_notices("this model")
     def __init__(self, system: Any, *arguments: Any, **settings: Any) -> None:
-        self._arguments, self._settings = arguments, settings
         bare = Unstarted(system, *arguments, **settings)
+        self._chosen = bare.settings
+        self._settings = dict(zip(_POSITIONAL, arguments, strict=False)) | settings | bare.settings.of_choice
         self.system, self._assembly = bare.system, bare.assembly
         self.channel_records = tuple(bare.table.channels)
         self.channels = tuple(channel.name for channel in self.channel_records)
@@ -108,7 +112,7 @@ class CompiledModel:
         """`simulation` of a `variant` of the system."""
         self.check_start(start or {})
         if self._bare is None:
-            sim: Simulation = Unstarted(system, *self._arguments, **self._settings)
+            sim = self._unstarted(system)
             sim.assembly = self._with_start(sim.assembly, start or {})
             sim.begin()
             return sim
@@ -139,8 +143,15 @@ class CompiledModel:
             if self._bare is not None:
                 self._bare = self._bare.with_room(sim)
 
+    def _unstarted(self, system: Any) -> Simulation:
+        """A run that has not begun, with the method that was chosen for the system as it was given."""
+        sim = Unstarted(system, **self._settings)
+        if self._chosen.method_chosen:
+            sim.settings = self._chosen
+        return sim
+
     def _built_anew(self, system: Any, start: Numbers) -> Simulation:
-        sim = Unstarted(system, *self._arguments, **self._settings)
+        sim = self._unstarted(system)
         sim.assembly = self._with_start(sim.assembly, start)
         sim.begin()
         return sim

@@ -44,7 +44,8 @@ def simulate(
     ----------
     system : Model or EquationSystem.
     t_end : end time, s.
-    method : one of `METHODS`, which describes them.
+    method : one of `METHODS`, which describes them, or "auto": chosen from the model, its start and the tolerance;
+        `Result.method_chosen` says what was taken and why.
     rtol, atol : tolerances of the error control, on coordinates and velocities. atol's default, `OfScales(1e-9)`,
         is a part of the model's own scales (`Simulation.scales`); a plain number counts as it stands, in the units of q
         and v, and so do those of a mapping by kind ("length", "angle", "speed", "angular_speed").

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.laws import LAWS
-from ..core.methods.registry import METHODS
+from ..core.methods.automatic import METHOD_NAMES, described
 from ..core.model.units import parse_unit
 from .log import CATEGORIES
 from .settings import Settings
@@ -114,7 +114,7 @@ def add_items(parent: Any, items: tuple[str, ...]) -> None:
     """The items of an enumeration; methods and laws with their descriptions."""
     laws = {name: inspect.getdoc(law) or "" for name, law in LAWS.items()}
     for value, name in enumerate(items):
-        text = METHODS[name].description if name in METHODS else laws.get(name, "").split("\n\n")[0]
+        text = described(name).description if name in METHOD_NAMES else laws.get(name, "").split("\n\n")[0]
         add(parent, "Item", name=name, value=value, description=" ".join(text.split()) or None)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..core.errors import ModelError
 from ..core.laws import LAWS
-from ..core.methods.registry import METHODS
+from ..core.methods.automatic import METHOD_NAMES, described
 from ..core.model.channels import Channel, Input, Parameter
 from ..core.multibody_model import Model
 from .origin import Origin
@@ -90,7 +90,7 @@ def _channel(reference: int, c: Channel, scales: Scales) -> Variable:
 
 
 def _solver(settings: Settings, number: Iterator[int]) -> list[Variable]:
-    names = tuple(METHODS)
+    names = METHOD_NAMES
     if settings.method not in names:
         raise ModelError(f"unknown method '{settings.method}'; known are {sorted(names)}")
     method = Variable(
@@ -115,7 +115,7 @@ def _solver(settings: Settings, number: Iterator[int]) -> list[Variable]:
 
 def _options(settings: Settings, number: Iterator[int]) -> list[Variable]:
     """The options of the method that are one value; a list or the like stays as exported."""
-    known = METHODS[settings.method].options
+    known = described(settings.method).options
     variables: list[Variable] = []
     for name in sorted(settings.options):
         value = settings.options[name]

@@ -12,14 +12,15 @@ EXAMPLES = "Examples:\n\n  tlismni methods\n\n  tlismni run chain --method ebdf 
 @one_line_errors
 def methods(json: Json = False, debug: Debug = False) -> None:
     """List the integration methods with their options."""
-    from ...core import METHODS
+    from ...core.methods.automatic import METHOD_NAMES, described
     from ..source import RUN_OPTIONS
 
+    known = [described(name) for name in METHOD_NAMES]
     if json:
         of_runs = [{"name": n, "default": d, "description": text} for n, (d, text) in RUN_OPTIONS.items()]
-        print_json({"methods": [_data(method) for method in METHODS.values()], "run_options": of_runs})
+        print_json({"methods": [_data(method) for method in known], "run_options": of_runs})
         return
-    for method in METHODS.values():
+    for method in known:
         stdout().print(f"[bold]{method.name}[/bold]: {method.description}")
         rows = [(name, _shown(_value(o, o.default)), _range(o), o.description) for name, o in method.options.items()]
         if rows:

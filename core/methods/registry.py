@@ -171,7 +171,7 @@ def get_formula(name: str, options: Mapping[str, Any]) -> Formula:
     ModelError : for an unknown method or option, or a value outside its range.
     """
     if name not in METHODS:
-        raise ModelError(f"unknown method '{name}'; known are {sorted(METHODS)}")
+        raise ModelError(f"unknown method '{name}'; known are {sorted((*METHODS, 'auto'))}")
     method = METHODS[name]
     unknown = set(options) - set(method.options)
     if unknown:

@@ -62,6 +62,7 @@ def image_and_parameters(
     library = own_library()
     full = {"max_steps": MOST_STEPS, **settings}
     sim = Simulation(model, **full)
+    full |= sim.settings.of_choice  # variants are solved by the formula of the image
     if isinstance(model, Model):
         refuse_motions(sim)
         let_begin(sim, full)

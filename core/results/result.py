@@ -78,6 +78,11 @@ class Result:
         self.settings = dict(settings or {})
 
     @property
+    def method_chosen(self) -> str:
+        """What `method="auto"` took, with its options, and why; empty if the method was given."""
+        return str(self.settings.get("method_chosen", ""))
+
+    @property
     def t(self) -> NDArray[np.float64]:
         """Times (N,), s."""
         return self.samples[:, 0]

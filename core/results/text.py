@@ -31,6 +31,8 @@ def facts(result: "Result") -> list[tuple[str, str]]:
         step = chosen.get("step")
         control = f"step {step:g} s" if step is not None else f"rtol {chosen['rtol']:g}, atol {chosen['atol']!r}"
         found.append(("method", f"{chosen['method']} ({control})"))
+        if result.method_chosen:
+            found.append(("auto", result.method_chosen))
     kinds = Counter((event.kind, event.contact) for event in result.events)
     listed = [f"{kind} of {contact} {count}" for (kind, contact), count in kinds.most_common(6)]
     more = f" and {len(kinds) - 6} more kinds" if len(kinds) > 6 else ""

@@ -22,6 +22,7 @@ from ..event_detection.dense_output import query
 from ..events import Event, Fallback
 from ..events.progress import Progress
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
+from ..methods.automatic import AUTO
 from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
 from ..multibody_model import Model
@@ -42,6 +43,7 @@ from .ready import make_ready
 from .settings import START_TOLERANCE, Settings, set_control
 from .setup import build_loop, build_method, state_fields
 from .start import begin
+from .start_figures import with_choice
 from .surface_jumps import refuse_surface_jumps
 from .unbounded import warn_of_unbounded
 
@@ -97,17 +99,21 @@ class Engine(ContactSide):
         step_records: bool = False,
         **method_options: Any,
     ) -> None:
-        self.settings = Settings(
+        settings = Settings(
             method=method, rtol=rtol, atol=atol, step=step, max_step=max_step, first_step=first_step, t0=t0,
             outer=outer, acceleration=acceleration, depth=depth, fallback=fallback, controller=controller,
             newton_tolerance=newton_tolerance, start_tolerance=start_tolerance, redundant=redundant,
             max_steps=max_steps, method_options=dict(method_options),
         )  # fmt: skip
-        self.formula: Formula = get_formula(method, method_options)
+        if method != AUTO.name:
+            get_formula(method, method_options)
         if not isinstance(system, Model) and not _is_equations(system):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
-        self.system = system
-        refuse_surface_jumps(system, self.formula, method)
+        if method == AUTO.name:
+            settings = with_choice(settings, system)
+        self.formula: Formula = get_formula(settings.method, settings.method_options)
+        self.settings, self.system = settings, system
+        refuse_surface_jumps(system, self.formula, settings.method)
         self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()
         warn_of_unbounded(self.assembly)
         self.workspace = Workspace(self.assembly, state_fields(self.assembly))

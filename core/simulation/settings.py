@@ -67,6 +67,13 @@ class Settings:
     redundant: str = "drop"
     max_steps: int | None = None
     method_options: dict[str, Any] = field(default_factory=dict)
+    method_chosen: str = field(default="", repr=False)
+    """What `method="auto"` took, and why; `method` is what was taken. States are of that, whoever chose it."""
+
+    @property
+    def of_choice(self) -> dict[str, Any]:
+        """Arguments of `Simulation` that take the chosen method again, whatever the model; none if none was chosen."""
+        return {"method": self.method, **self.method_options} if self.method_chosen else {}
 
     def __post_init__(self) -> None:
         for name in ("rtol", "step", "max_step", "first_step", "newton_tolerance", "start_tolerance"):

@@ -36,7 +36,8 @@ class Simulation(Engine):
     Parameters
     ----------
     system : a Model or an EquationSystem.
-    method : name of an integration method (`tlismni.core.methods.registry.METHODS`).
+    method : name of an integration method (`tlismni.core.methods.registry.METHODS`), or "auto": chosen from the model,
+        its start and the tolerance; `settings.method_chosen` says what was taken and why.
     rtol, atol : tolerances of the error control. atol's default, `OfScales(1e-9)`, is a part of the model's own scales
         (`scales`); a plain number counts as it stands, in the units of q and v; it may be a mapping with any of
         "length" (m), "angle" (rad), "speed" (m/s), "angular_speed" (rad/s), the others are the default.

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import tlismni.cli as cli
 from tlismni.cli.screen import compile_notice, number, plain, shortened
-from tlismni.core import METHODS
+from tlismni.core.methods.automatic import METHOD_NAMES, described
 from tlismni.models import catalogue, names
 
 COMMANDS = ("list", "methods", "run", "export", "warm", "cosim", "crosscheck")
@@ -58,11 +58,11 @@ def test_list_of_one_scenario(tlismni: Command) -> None:
 
 def test_methods(tlismni: Command) -> None:
     done = tlismni("methods")
-    assert all(name in done.out for name in METHODS)
+    assert all(name in done.out for name in METHOD_NAMES)
     shown = {
         m["name"]: {o["name"]: o["default"] for o in m["options"]} for m in tlismni("methods", "--json").json["methods"]
     }
-    assert shown == {name: {o: v.default for o, v in m.options.items()} for name, m in METHODS.items()}
+    assert shown == {name: {o: v.default for o, v in described(name).options.items()} for name in METHOD_NAMES}
 
 
 def test_without_typer_one_line_says_what_to_install(

@@ -247,3 +247,10 @@ def test_a_missing_extra_is_named(tlismni: Command, monkeypatch: pytest.MonkeyPa
     done = tlismni("run", "chain", "--t-end", 0.01, "--plot", tmp_path / "p.png")
     assert done.code == 1
     assert 'pip install "tlismni[plot]"' in done.cause
+
+
+def test_auto_says_what_it_took(tlismni: Command) -> None:
+    done = tlismni("run", "chain", "--method", "auto", "--t-end", "0.05")
+    assert "auto took adams (order=6): nothing is stiff or damped" in done.out
+    assert tlismni("run", "chain", "--method", "auto", "--t-end", "0.05", "--json").json["solver"]["chosen"]
+    assert "has no option ['k']" in tlismni("run", "chain", "--method", "auto", "--option", "k=3").err
