@@ -34,9 +34,23 @@ def _imported(path: Path) -> Iterator[Path]:
             yield base.with_suffix(".py")
             continue
         for words in map(bytes.split, _COMMENT.sub(b"", names).strip(b"()").split(b",")):
+            if words[:1] == [b"*"]:  # for type checkers: each name that is taken from there stands where it is taken
+                continue
             named = base.joinpath(*[word.decode() for word in words[:1]])
             places = (named.with_suffix(".py"), named / "__init__.py", base / "__init__.py")
             yield from [place for place in places if place in sources()][:1]
+            yield from [_late()[word] for word in words[:1] if word in _late()]
+
+
+@cache
+def _late() -> dict[bytes, Path]:
+    """Modules of the names that `core/__init__.py` imports late, and with it its folders."""
+    found = {}
+    for _, module, names in _IMPORT.findall(sources()[_CORE / "__init__.py"]):
+        place = _CORE.joinpath(*module.decode().split(".")).with_suffix(".py")
+        if place in sources():
+            found[names.split()[0]] = place
+    return found
 
 
 @cache

@@ -17,6 +17,9 @@ def parsed(path: Path) -> set[Path]:
             base = path.parents[node.level - 1].joinpath(*(node.module or "").split("."))
             names = [base.with_suffix(".py")]
             for alias in node.names:
+                if alias.name == "*":  # for type checkers: what is taken from there is followed where it is taken
+                    assert path.name == "__init__.py" and path.parents[1] == CORE
+                    continue
                 names += [base / f"{alias.name}.py", base / alias.name / "__init__.py"]
                 if not any(name.is_file() for name in names):
                     names.append(base / "__init__.py")
@@ -32,6 +35,10 @@ def test_every_import_is_followed() -> None:
     for path in reach.sources():
         missing = parsed(path) - set(reach.imported(path))
         assert not missing, (path, missing)
+
+
+def test_a_name_of_a_folder_is_followed_to_its_module() -> None:
+    assert CORE / "elements" / "cable3d.py" in reach.imported(CORE / "results" / "restart.py")
 
 
 def test_code_depends_on_what_it_reaches_alone() -> None:
