@@ -17,11 +17,11 @@ Command = Callable[..., Any]
 @needs_exudyn
 def test_agreement_is_exit_code_0(tlismni: Command, tmp_path: Path) -> None:
     done = tlismni(
-        "crosscheck", "bouncing_ball", "--set", "law=hertz", "--t-end", 0.6, "--report", tmp_path / "report", "--json"
+        "crosscheck", "pendulum", "--set", "angle=0.1", "--t-end", 0.6, "--report", tmp_path / "report", "--json"
     )
     assert done.code == 0
     figures = done.json
-    assert figures["ok"] is True and figures["parameters"]["law"] == "hertz"
+    assert figures["ok"] is True and figures["parameters"]["angle"] == 0.1
     assert {row["verdict"] for row in figures["rows"]} == {"agree"}
     assert Path(figures["report"]).is_file()
 

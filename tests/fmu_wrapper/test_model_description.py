@@ -1,6 +1,5 @@
 """What modelDescription.xml says is what the slave does: dependencies, limits, magnitudes, terminals, start values."""
 
-import random
 import zipfile
 from itertools import cycle
 
@@ -29,7 +28,6 @@ from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.outputs import MarkerOutput2D
 from tlismni.core.model.signals import InputSignal
 from tlismni.core.multibody_model import Model
-from tlismni.core.source_digests import core_digest
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.dependencies import Dependencies
 from tlismni.fmu_wrapper.nominal import estimates
@@ -385,18 +383,8 @@ def test_fmutool_finds_nothing_to_complain_about(tmp_path, caplog, version):
     assert caplog.records or check
 
 
-SAMPLE = random.Random(core_digest()).sample(names(), (len(names()) + 1) // 2)
-"""Half of the scenarios, others whenever the core changes."""
-
-
 @pytest.mark.sampled(4)
-@pytest.mark.parametrize(
-    ("name", "version"),
-    [
-        pytest.param(name, version, marks=[] if name in SAMPLE else [pytest.mark.full])
-        for name, version in zip(names(), cycle(("2.0", "3.0")))
-    ],
-)
+@pytest.mark.parametrize(("name", "version"), list(zip(names(), cycle(("2.0", "3.0")))))
 def test_every_scenario_is_described_validly(tmp_path, name, version):
     """A sample, each in one version; `-m full`: all, in the other one, too."""
     path = export_fmu(load(name), tmp_path / "x.fmu", version)

@@ -30,7 +30,7 @@ CC = shutil.which("cc")
 WAYS = [(False, False), (False, True), (True, False), (True, True)]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("name", "version"),
     [

@@ -1,7 +1,6 @@
 """FMUs of all scenarios in space: valid, the bits of a run in this process with Python and without; their scene."""
 
 import json
-import random
 import struct
 import zipfile
 
@@ -25,7 +24,6 @@ from tlismni.core import (
     Simulation,
 )
 from tlismni.core.compiled.library import LIBRARY
-from tlismni.core.source_digests import core_digest
 from tlismni.fmu_wrapper import Slave, export_fmu
 from tlismni.fmu_wrapper.terminals import terminals
 from tlismni.models import load, names
@@ -34,12 +32,6 @@ from tlismni.viewer.space.build import is_spatial
 SPATIAL = [name for name in names() if is_spatial(load(name).model)]
 STRIKING = [name for name in SPATIAL if load(name).model.contacts]
 STEPS = 12
-LONG = ("arm_stop", "spatial_slider_crank", "spatial_slider_crank_stop")
-"""Scenarios with so many parameters that an export without Python takes long: one of them, another whenever the core
-changes; all with `-m full`. Of the others, too, a half."""
-CHANCE = random.Random(core_digest())
-SHORT = [name for name in SPATIAL if name not in LONG]
-SAMPLE = [CHANCE.choice(LONG), *CHANCE.sample(SHORT, (len(SHORT) + 1) // 2)]
 
 
 def opened(path, folder, version, **how):
@@ -55,8 +47,8 @@ def outputs(side):
     return {by_reference[k]: value for k, value in zip(side.reals, found, strict=True)}
 
 
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in SAMPLE else [pytest.mark.full]) for n in SPATIAL])
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("name", SPATIAL)
 def test_the_bits_of_a_run_in_this_process(name, tmp_path):
     scenario, version = load(name), "2.0" if len(name) % 2 else "3.0"
     end = scenario.t_end

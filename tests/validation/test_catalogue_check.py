@@ -37,8 +37,9 @@ LONG = (
     "hub_beam_stop",
     "flexible_slider_crank_stop",
 )
-"""Scenarios whose coarse comparison takes four to fifteen seconds: three of them, others whenever the core changes; the
-rest with `-m full`. What they are made of is compared in small in the tests of the translation."""
+"""Scenarios whose coarse comparison takes four to fifteen seconds: three of them, others whenever the core changes, are
+among those of which some are sampled; the rest with `-m full`. What they are made of is compared in small in the tests
+of the translation."""
 SOME_LONG = random.Random(core_digest()).sample(LONG, 3)
 
 
@@ -75,7 +76,7 @@ def test_every_scenario_has_a_case_that_can_be_compared_and_every_case_a_scenari
 
 
 @needs_exudyn
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("case", [marked(c) for c in FIRST if c.scenario not in FLUCTUATING])
 def test_coarse_cross_check(case: Case) -> None:
     found = run_case(case, coarse=True)

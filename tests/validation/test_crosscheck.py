@@ -27,7 +27,7 @@ def verdicts(found: CrossCheck) -> dict[str, str]:
     return {r.quantity: r.verdict for r in found.rows}
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @needs_exudyn
 @pytest.mark.parametrize(
     "law",

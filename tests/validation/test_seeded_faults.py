@@ -86,7 +86,7 @@ TWICE = ("wrong inertia, in a force contact", "1 % in restitution, as a constrai
 """Found in test_crosscheck.py, too, where more is asked of them: here with `-m full`."""
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "kind, what, name, parameters, t_end, fault",
     [pytest.param(f[0][:8], *f, id=f[0], marks=[pytest.mark.full] if f[0] in TWICE else []) for f in FAULTS],
