@@ -47,6 +47,13 @@ class Option:
         return float(value)
 
 
+FINEST_WORKING = 1e-12
+"""Tolerances of a step are not made finer than that: the error estimates of short steps are not far above rounding."""
+MOST_SUMMED = 100.0
+"""Number of steps whose errors are counted. More are taken only with tolerances that are too fine for the order, and
+would become several times as many."""
+
+
 @dataclass(frozen=True)
 class Formula:
     """An integration formula ready to run."""
@@ -77,8 +84,24 @@ class Formula:
     """True if it carries accelerations of its own from step to step, beside the true ones."""
     turns: bool = True
     """True if attitudes in space are integrated in turning frames (`frames.py`)."""
+    sums_up: float = 0.0
+    """Order p (2 or more) of a formula that is judged by its own error of a step; 0: by that of a formula of one order
+    less, which it is better than, or not at all (`working_tolerance`)."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
+
+    def working_tolerance(self, rtol: float) -> float:
+        """The tolerance of the error of a step for errors of the run of about `rtol`.
+
+        The errors of steps add up. Steps of size h with an error C h^(p+1) each leave C h^p a unit of time: where that
+        of a step is tol, the sum falls as tol^(p/(p+1)) only, and is larger by the number of steps. So steps are held
+        to rtol^((p+1)/p), that is rtol over the number of steps, rtol^(-1/p); then the error of the run falls as rtol.
+        Radau5 (Hairer and Wanner) changes its tolerances in the same way. Formulas that are judged by a lower one have
+        no need of it: their error falls as tol itself.
+        """
+        if self.sums_up < 2.0:
+            return rtol
+        return max(min(rtol, FINEST_WORKING), rtol * max(rtol ** (1.0 / self.sums_up), 1.0 / MOST_SUMMED))
 
 
 @dataclass(frozen=True)

@@ -55,11 +55,12 @@ def _multistep(name: str, step: Any, k: float | str, angle: float, parameters: t
     if k == "stable":
         return Formula(step, 4, (*parameters, 3.0, 4.0), 5, stages, select=select_stable_k)
     if k != "auto":
-        growth = 2.0 if name == "bdf" else EBDF_GROWTH.get(int(k), 2.0)
-        return Formula(step, int(k), parameters, int(k) + 1, stages, growth)
+        growth, sums_up = (2.0, float(k)) if name == "bdf" else (EBDF_GROWTH.get(int(k), 2.0), 0.0)
+        return Formula(step, int(k), parameters, int(k) + 1, stages, growth, sums_up=sums_up)
     most = max(i + 1 for i, alpha in enumerate(ANGLES[name][: MOST_AUTOMATIC[name]]) if alpha >= angle)
     first = min(FIRST_AUTOMATIC, most)
-    return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, stages, select=select_k)
+    sums_up = float(most) if name == "bdf" else 0.0
+    return Formula(step, first, (*parameters, 1.0, float(most)), first + 1, stages, select=select_k, sums_up=sums_up)
 
 
 # errors of the stages of one-step formulas add up over many more steps than those of multistep ones, and nothing
@@ -82,7 +83,8 @@ def _irk(name: str) -> Formula:
 def _newmark(alpha: float, beta: float, gamma: float) -> Formula:
     # its guess is mostly good enough for one increment, which has to see the constraints met: what they leave open goes
     # into the accelerations of stiff parts, and these unsmoothed into the next guess and into the estimate of the error
-    return Formula(newmark_step, 0, (alpha, beta, gamma), carries=True, slack=1.0)
+    sums_up = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
+    return Formula(newmark_step, 0, (alpha, beta, gamma), carries=True, slack=1.0, sums_up=sums_up)
 
 
 def _hht(values: Mapping[str, Any]) -> Formula:
@@ -112,13 +114,13 @@ METHODS = {
             "trapezoidal",
             "TLISMNI with the trapezoidal rule, coordinates and velocities as unknowns; order 2, A-stable",
             {},
-            lambda o: Formula(adams_step, 2, (), 2),
+            lambda o: Formula(adams_step, 2, (), 2, sums_up=2.0),
         ),
         Method(
             "park",
             "TLISMNI with Park's formula, the mean of BDF 2 and BDF 3; order 2, L-stable",
             {},
-            lambda o: Formula(park_step, 0, (), 3),
+            lambda o: Formula(park_step, 0, (), 3, sums_up=2.0),
         ),
         Method(
             "bdf",
@@ -145,7 +147,7 @@ METHODS = {
             "adams",
             "TLISMNI with implicit Adams formulas on the actual grid, Milne's error estimate; not for stiff systems",
             {"order": Option(4, 2, 8, "order; high ones for smooth, soft systems and tight tolerances", integer=True)},
-            lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"])),
+            lambda o: Formula(adams_step, int(o["order"]), (), int(o["order"]), sums_up=o["order"]),
         ),
         Method(
             "irk",

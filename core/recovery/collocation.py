@@ -110,7 +110,7 @@ class Collocation:
         self.active = self.workspace.structure.active.copy()
         self.rows = self.workspace.structure.multiplier_rows.copy()
         self.t0 = float(start.times[0])
-        scale, rtol = sim.assembly.coordinate_scale, sim.settings.rtol
+        scale, rtol = sim.assembly.coordinate_scale, sim.rtol
         # to see whether the iteration converges: rounding moves coordinates that stand still as much as large ones
         self.weights = tuple(
             np.asarray(sim.workspace.arrays[name][: self.n] + rtol * scale * np.max(np.abs(x[0] / scale)))

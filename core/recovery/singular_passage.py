@@ -81,7 +81,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, L
             break
     if best is None or (may_come_nearer and (_too_long(best) or _leaps(sim, best))):
         return REANALYZE, None
-    if best.points is None or best.error * sim.settings.rtol > LARGEST_TOLERANCE:
+    if best.points is None or best.error * sim.rtol > LARGEST_TOLERANCE:
         if last_resort:
             _refuse_branching(sim, best, sim.t_internal + near)
         return REANALYZE, None
@@ -89,7 +89,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, L
         logger.warning(
             "the singular position at t = %.9g s was passed with an estimated error of %.3g times the tolerances "
             "(rtol = %.3g): that is what rounding leaves of a step over it",
-            sim.t_internal + near, best.error, sim.settings.rtol,
+            sim.t_internal + near, best.error, sim.rtol,
         )  # fmt: skip
     return _accept(sim, over, best.points, natural)
 
@@ -123,7 +123,7 @@ class LongStep:
         def trusted(t: float) -> bool:
             return steepness * abs(t - singular) > UNDETERMINED
 
-        noise = LARGEST_TOLERANCE / sim.settings.rtol
+        noise = LARGEST_TOLERANCE / sim.rtol
         self.collocation = Collocation(sim, self.start, trusted, noise)
         self.weights = tuple(arrays[name][:n].copy() for name in ("weight_q", "weight_v"))
         self.work_weights = arrays["weight_v"][w:].copy()

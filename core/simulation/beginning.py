@@ -49,9 +49,10 @@ class Beginning:
                 "n_turned": 0, "n_turn_numbers": 0,
             },
         )  # fmt: skip
-        self._set_settings(sim.settings)
+        self._set_settings(sim.settings, sim.rtol / sim.settings.rtol)
 
-    def _set_settings(self, s: Settings) -> None:
+    def _set_settings(self, s: Settings, share: float) -> None:
+        """`share`: of the tolerances that were asked for, what steps are held to."""
         numbers = self.numbers
         numbers[places.T0], numbers[places.START_TOLERANCE] = s.t0, s.start_tolerance
         numbers[places.STEP], numbers[places.FIRST_STEP] = s.step or 0.0, s.first_step or 0.0
@@ -61,7 +62,7 @@ class Beginning:
             KINDS, (places.LENGTHS, places.ANGLES, places.SPEEDS, places.ANGULAR_SPEEDS), strict=True
         ):
             atol = s.atol.get(kind, DEFAULT_ATOL) if not isinstance(s.atol, int | float) else s.atol
-            numbers[place], numbers[place + places.OF_SCALES] = float(atol), float(isinstance(atol, OfScales))
+            numbers[place], numbers[place + places.OF_SCALES] = share * float(atol), float(isinstance(atol, OfScales))
 
     @property
     def numbers(self) -> NDArray[np.float64]:

@@ -112,6 +112,8 @@ class Engine(ContactSide):
         if method == AUTO.name:
             settings = with_choice(settings, system)
         self.formula: Formula = get_formula(settings.method, settings.method_options)
+        self.rtol = self.formula.working_tolerance(rtol) if step is None else rtol
+        """What the errors of steps are held to, relatively."""
         self.settings, self.system = settings, system
         refuse_surface_jumps(system, self.formula, settings.method)
         self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()

@@ -140,9 +140,9 @@ def set_control(settings: Settings, formula: Formula, assembly: Assembly, contro
         control[RTOL] = control[ATOL] = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
         control[NEWTON_TOLERANCE] = 1.0
     else:
-        control[RTOL] = settings.rtol
+        control[RTOL] = formula.working_tolerance(settings.rtol)
         control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
-            formula.newton_tolerance, min(0.01, FINEST / settings.rtol)
+            formula.newton_tolerance, min(0.01, FINEST / control[RTOL])
         )
     control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
     control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]

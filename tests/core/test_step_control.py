@@ -104,7 +104,8 @@ class TestAutomaticOrder:
     @pytest.mark.parametrize("method, option", [("ebdf", "k"), ("mebdf", "k"), ("bdf", "order")])
     def test_tolerance_is_kept_and_high_accuracy_gets_high_order(self, method, option):
         orders = []
-        for rtol in (1e-4, 1e-9):
+        # `bdf` holds its steps to finer tolerances than others
+        for rtol in (1e-3 if method == "bdf" else 1e-4, 1e-9):
             result = simulate(
                 point_pendulum(ANGLE, RATE), 1.0, method, rtol, rtol * 1e-2, step_records=True, **{option: "auto"}
             )

@@ -25,20 +25,23 @@ def reference(mechanism):
 
 @pytest.mark.parametrize("outer", ["newton", "jfnk"])
 @pytest.mark.parametrize(
-    "method, options, rtol, times",
+    "method, options, rtol, times, most",
     [
-        ("ebdf", {}, 1e-6, 10.0),
-        ("ebdf", {"k": "auto"}, 1e-6, 15.0),
-        ("mebdf", {"k": "auto"}, 1e-6, 15.0),
-        ("hht", {"alpha": -0.3}, 1e-6, 10.0),
-        ("bdf", {"order": 2}, 1e-4, 3.0),
-        ("park", {}, 1e-4, 5.0),
+        ("ebdf", {}, 1e-6, 10.0, 1e-3),
+        ("ebdf", {"k": "auto"}, 1e-6, 15.0, 1e-3),
+        ("mebdf", {"k": "auto"}, 1e-6, 15.0, 1e-3),
+        # with the tolerances of a step that others are told: 1e-6, 1e-4 and 1e-4
+        ("hht", {"alpha": -0.3}, 1e-4, 10.0, 1e-3),
+        ("bdf", {"order": 2}, 1e-4 ** (2.0 / 3.0), 3.0, 2e-2),
+        ("park", {}, 1e-4 ** (2.0 / 3.0), 5.0, 2e-2),
     ],
 )
-def test_steps_are_far_beyond_the_limit_of_explicit_methods(mechanism, reference, method, options, rtol, times, outer):
+def test_steps_are_far_beyond_the_limit_of_explicit_methods(
+    mechanism, reference, method, options, rtol, times, most, outer
+):
     result = simulate(mechanism, T_END, method, rtol, rtol, outer=outer, step_records=True, **options)
     assert np.median(result.steps["h"]) > times * SLOWEST
-    assert np.abs(result.q[-1] - reference.q[-1]).max() < 1000.0 * rtol
+    assert np.abs(result.q[-1] - reference.q[-1]).max() < most
     assert max(residuals(result)) < 1e-9  # accelerations are of the order of 1e3 m/s^2
 
 
