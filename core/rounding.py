@@ -40,6 +40,9 @@ STILL_COMPATIBLE = 1e-13
 """Of a row: what null vectors may leave that are not found anew, ten times what solving for them leaves."""
 RANK_TOLERANCE = 1e-9
 """Of a row: with less left of it after elimination it repeats others."""
+EQUAL_PIVOTS = 1.0 - 1e-6
+"""Of the largest pivot: others from there on are equal to it, and the lowest column is taken. What rounding makes of a
+start, and of the elimination, is a millionth of the difference."""
 NOT_DEPENDENT = 1e-9
 """Of a redundant row's norm: a row that contributes less to it is none of those that it repeats."""
 START_RANK = 1e-6

@@ -1,5 +1,6 @@
 """Any model as an exudyn MainSystem, built from primitives, with sensors that give the model's channels."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..core.multibody_model import Model
@@ -13,7 +14,8 @@ from .translation.redundant import drop_shared_loads, redundancy
 def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset[str] = frozenset()) -> Build:
     """`model` in exudyn, assembled and ready to run. Build it anew for every run: exudyn keeps state in it.
 
-    `sensors=False` leaves out recording (for timing). `clamped`: contacts that exudyn's own objects would let pull.
+    exudyn frees the system with the `Build` that is returned. `sensors=False` leaves out recording (for timing).
+    `clamped`: contacts that exudyn's own objects would let pull.
 
     Raises
     ------
@@ -31,7 +33,7 @@ def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset
     ground_node = mbs.AddNode(exudyn.items.NodePointGround())
     repeated = redundancy(model)
     build = Build(
-        exudyn, mbs, model, sensors, ground, ground_node, laid=laid_contacts(model), clamped=clamped,
+        exudyn, mbs, model, sensors, ground, ground_node, container, laid=laid_contacts(model), clamped=clamped,
         redundant=repeated.rows, sharing=repeated.sharing,
     )  # fmt: skip
     for element in model.elements():
@@ -41,16 +43,14 @@ def build_exudyn_model(model: Model, *, sensors: bool = True, clamped: frozenset
         names = ", ".join(f"{i.name} = {i.start:g} {i.unit}" for i in model.inputs)
         build.notes.append(f"input channels keep their start values: {names}")
     if build.before_step:
-        mbs.SetPreStepUserFunction(_all_of(build))
+        mbs.SetPreStepUserFunction(_all_of(build.before_step))
     mbs.Assemble()
-    # the system lives in the container: keep both together
-    mbs.variables["container"] = container
     return build
 
 
-def _all_of(build: Build) -> Any:
+def _all_of(functions: Sequence[Callable[[Any, float], None]]) -> Any:
     def before_step(mbs: Any, t: float) -> bool:
-        for function in build.before_step:
+        for function in functions:
             function(mbs, t)
         return True
 

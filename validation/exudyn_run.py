@@ -116,8 +116,7 @@ def run_exudyn(
     try:
         result, pulling = _recorded(build, t_end, step, settings or ExudynSettings())
     finally:
-        # exudyn keeps what its sensors have stored, 10 to 200 MB, until it is told to let go of it
-        build.mbs.Reset()
+        build.release()  # where it fails too, while the error refers to it
     return run_exudyn(model, t_end, step, settings, clamped | pulling) if pulling else result
 
 

@@ -8,6 +8,11 @@ NO_VALUE = -1
 """What compiled code gets where the Python function has raised: no status."""
 
 
+def address_of(function: Any) -> int:
+    """Machine address of a ctypes function. (After `ctypes.cast` the function refers to itself.)"""
+    return int(ctypes.c_void_p.from_buffer(function).value or 0)
+
+
 class FromPython:
     """`function(step)` -> status, at an address that takes (record, record, record, step), as steps and trials do.
 
@@ -17,17 +22,17 @@ class FromPython:
     Attributes
     ----------
     address : of the entry, as long as this object lives.
-    error : what the function has raised last; compiled code got NO_VALUE then. Raise it when that has returned.
     """
 
     def __init__(self, function: Callable[[float], int]) -> None:
-        self.error: BaseException | None = None
+        # the entry does not refer to this object: that would be a circle, which keeps the function's run
+        self._errors = errors = list[BaseException]()
 
         def entry(value: Any, exception: int, first: int, second: int, third: int, step: float) -> int:
             try:
                 value[0] = function(step)
             except BaseException as error:  # kept, not swallowed: it cannot pass through compiled code
-                self.error = error
+                errors.append(error)
                 value[0] = NO_VALUE
             return 0
 
@@ -36,4 +41,14 @@ class FromPython:
             ctypes.c_int32, ctypes.POINTER(ctypes.c_int64), pointer, pointer, pointer, pointer, ctypes.c_double
         )
         self._entry = kind(entry)
-        self.address = int(ctypes.cast(self._entry, pointer).value or 0)
+        self.address = address_of(self._entry)
+
+    def raise_error(self) -> None:
+        """Raise what the function has raised, if it has: compiled code, which has returned, got NO_VALUE then."""
+        if self._errors:
+            last = self._errors.pop()
+            self._errors.clear()
+            try:
+                raise last
+            finally:
+                del last

@@ -1,6 +1,5 @@
 """What the kernel of user-written equations calls back to: the user's functions, put into a workspace's arrays."""
 
-import ctypes
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import ref
@@ -8,6 +7,7 @@ from weakref import ref
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled.from_python import address_of
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.weakly import Weakly
 from ..laws import ForceLaw
@@ -28,7 +28,7 @@ class EquationBinding:
         # the workspace holds this, through its assembly
         self._workspace: Callable[[], Any] = lambda: None
         self._callback = CALLBACK(Weakly(self._call))
-        self.address = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
+        self.address = address_of(self._callback)
 
     def bind(self, workspace: Any) -> None:
         self._workspace = ref(workspace)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled import types
 from ..compiled.jit import compiled_unlocked, internal, interpreted
-from ..rounding import NOT_DEPENDENT
+from ..rounding import EQUAL_PIVOTS, NOT_DEPENDENT
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -107,14 +107,16 @@ def eliminate(
                             n_pending = _insert(pending, n_pending, owner[c])
                     x[c] -= times * u[p]
         best = 0.0
+        for q in range(count):
+            size = abs(x[column[q]]) * column_scale[column[q]]
+            if size > best:
+                best = size
         best_column = -1
         for q in range(count):
             c = column[q]
-            size = abs(x[c]) * column_scale[c]
-            if size > best or (size == best and c < best_column):
-                best = size
+            if abs(x[c]) * column_scale[c] >= EQUAL_PIVOTS * best and (best_column < 0 or c < best_column):
                 best_column = c
-        independent = best_column >= 0 and best >= tol * top
+        independent = best > 0.0 and best >= tol * top
         if independent:
             pivot_column[i] = best_column
             owner[best_column] = i
@@ -170,7 +172,8 @@ def independent_columns(
 ) -> tuple[Ints, int]:
     """One pivot column for each row of an (m, n) CSR matrix, -1 for a redundant row; and the rank. No checks.
 
-    The pivot is the largest |remainder| * column_scale (n,) of the row, the lowest column of equals. A row is
+    The pivot is the largest |remainder| * column_scale (n,) of the row, the lowest column of those that rounding may
+    have told apart: where lengths that are equal tie, one rounding of the start would choose otherwise. A row is
     redundant if that is below `tol` times the largest |entry| * column_scale of the row itself, or zero.
     """
     return eliminate_rows(m, n, indptr, indices, data, column_scale, tol)[:2]

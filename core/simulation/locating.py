@@ -36,8 +36,7 @@ def locate_in_long_step(sim: "Simulation", over: "LongStep") -> None:
     """
     trial = FromPython(over.trial)
     status = sim.drive.locate(trial.address)
-    if trial.error is not None:
-        raise trial.error
+    trial.raise_error()
     if status != OK:
         raise RuntimeError(f"a step over a singular position ended with status {status}")
     _take(sim)

@@ -136,7 +136,7 @@ def _pushes(law: KelvinVoigt, gap: float, rate: float) -> bool:
 def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Shapes, acts: bool) -> BeforeStep:
     """Switch the contact off when the force has come to zero, and on again when the gap has opened."""
     names = {marker.body for marker in (shapes[0].marker, shapes[1].marker)} - {GROUND}
-    starts = {name: build.bodies[name].reference for name in names}
+    nodes = {name: (build.bodies[name].node, np.asarray(build.bodies[name].reference)) for name in names}
     core, active = build.exudyn.core, [acts]
 
     def before_step(mbs: Any, t: float) -> None:
@@ -144,9 +144,8 @@ def _release(build: Build, item: Any, memory: Any, law: KelvinVoigt, shapes: Sha
         if active[0] and mbs.GetNodeOutput(memory, core.OutputVariableType.Coordinates)[0] > 0.0:
             return
         bodies = {}
-        for name in names:
-            node = build.bodies[name].node
-            q = mbs.GetNodeOutput(node, core.OutputVariableType.Coordinates) + np.asarray(starts[name])
+        for name, (node, start) in nodes.items():
+            q = mbs.GetNodeOutput(node, core.OutputVariableType.Coordinates) + start
             v = mbs.GetNodeOutput(node, core.OutputVariableType.Coordinates_t)
             q, v = (*q, 0.0)[:3], (*v, 0.0)[:3]
             bodies[name] = BodyStates(*(np.atleast_1d(x) for x in (*q, *v)))

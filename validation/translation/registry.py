@@ -1,5 +1,6 @@
 """Which function translates which record, and what the functions share while a model is built."""
 
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
@@ -179,6 +180,11 @@ class Derived:
     function: Callable[[dict[str, np.ndarray]], np.ndarray]
 
 
+def _reset(container: Any, mbs: Any) -> None:
+    """Let exudyn free a system; its `container` is there until then."""
+    mbs.Reset()
+
+
 @dataclass
 class Build:
     """A model under construction in exudyn."""
@@ -189,6 +195,8 @@ class Build:
     sensors: bool
     ground: int
     ground_node: int
+    container: Any
+    """exudyn's container of the system, which lives in it."""
     bodies: dict[str, BodyItems] = field(default_factory=dict)
     columns: list[Column] = field(default_factory=list)
     contacts: list[ContactColumns] = field(default_factory=list)
@@ -209,6 +217,16 @@ class Build:
     """Called at the start of each step with (mbs, t)."""
     notes: list[str] = field(default_factory=list)
     """What a reader of the comparison should know."""
+
+    def __post_init__(self) -> None:
+        # no user function may refer to this object, or it is never freed
+        self._freed = weakref.finalize(self, _reset, self.container, self.mbs)
+        self._freed.atexit = False
+
+    def release(self) -> None:
+        """Let exudyn free the system, as when this object is freed: it keeps items, user functions and what sensors
+        have stored, 10 to 200 MB, until it is told to let go of them."""
+        self._freed()
 
     def add(self, item_name: str, **fields: Any) -> Any:
         """Add an item of exudyn's item interface; returns its index."""
