@@ -81,7 +81,7 @@ def test_jfnk_does_not_mind_stiffness(method, stiff):
 def test_jfnk_needs_fewer_factorisations_than_newton():
     """Krylov vectors take the place of new tangents."""
     system = load("chain", links=6).model
-    newton, jfnk = (simulate(system, 1.0, "hht", 1e-6, outer=outer).stats for outer in ("newton", "jfnk"))
+    newton, jfnk = (simulate(system, 1.0, "hht", 1e-4, outer=outer).stats for outer in ("newton", "jfnk"))
     assert jfnk["krylov_iterations"] > 0 and newton["krylov_iterations"] == 0
     assert jfnk["factorizations"] < newton["factorizations"]
 

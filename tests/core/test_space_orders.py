@@ -53,7 +53,7 @@ def test_adams_follows_its_tolerance(exact, name):
     """Its order is its own choice: a thousandth of the tolerance must bring a small part of the error."""
     model, t_end = SYSTEMS[name]
     errors = []
-    for rtol in (1e-6, 1e-9, 1e-12):
+    for rtol in (1e-3, 1e-6, 1e-9):
         result = simulate(model, t_end, "adams", rtol=rtol, atol=0.01 * rtol, record=False)
         errors.append(np.abs(np.concatenate([result.q[-1], result.v[-1]]) - exact[name]).max())
         assert errors[-1] < 1e3 * rtol

@@ -121,7 +121,7 @@ def test_what_exudyn_cannot_hold_is_said() -> None:
 # a joint in the plane from a formula
 
 
-class OnParabola(ScalarJoint2D):
+class AlongParabola(ScalarJoint2D):
     """Marker b slides on a parabola about marker a."""
 
     formula = scalar_constraint(lambda a, b, curvature: b.y - a.y - 0.5 * curvature * (b.x - a.x) ** 2)
@@ -132,6 +132,6 @@ class OnParabola(ScalarJoint2D):
 
 def test_a_joint_from_a_formula_is_seen() -> None:
     bead = PointMass2D(name="bead", mass=0.1, position=(0.5, 0.25))
-    model = Model(bodies=[bead], joints=[OnParabola(name="wire", b=Marker2D(body="bead"), curvature=2.0)])
+    model = Model(bodies=[bead], joints=[AlongParabola(name="wire", b=Marker2D(body="bead"), curvature=2.0)])
     (link,) = scene_of_start(model).links
     assert (link.name, link.kind) == ("wire", "rod")
