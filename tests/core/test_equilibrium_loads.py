@@ -4,13 +4,13 @@ import itertools
 
 import numpy as np
 import pytest
+from blocks_on_feet import AREA, DULL, HEIGHT, MASS, ON_AREA, ON_LINE, G, area, least, line
 from scipy.optimize import minimize
 from tlismni.core import (
     AppliedForce2D,
     Axes,
     Bushing2D,
     Constant,
-    CoulombFriction,
     Disk2D,
     DiskOnHalfPlane2D,
     HalfPlane2D,
@@ -18,7 +18,6 @@ from tlismni.core import (
     Marker2D,
     Marker3D,
     Model,
-    NewtonImpact,
     RigidBody2D,
     RigidBody3D,
     Sphere3D,
@@ -28,46 +27,6 @@ from tlismni.core import (
 from tlismni.core.analysis import eigenmodes, static_equilibrium
 from tlismni.core.analysis.least_contact_forces import independent_contacts, least_contact_forces
 
-G, MASS, HEIGHT = 9.81, 3.0, 0.3
-DULL = NewtonImpact(restitution=0.0)
-PLACES = (-0.3, 0.1, 0.4)
-AREA = ((-0.2, -0.25), (0.2, -0.2), (-0.15, 0.2), (0.25, 0.2))
-
-
-def least(matrix, wanted, compliance):
-    """Forces F of least sum c F^2 with matrix F = wanted."""
-    root = 1.0 / np.sqrt(np.asarray(compliance, dtype=float))
-    return root * np.linalg.lstsq(matrix * root, wanted, rcond=None)[0]
-
-
-def line(compliance, order=range(3), places=PLACES, unit=1.0, above=0.0, forces=()):
-    """A block on feet in a line; `unit`: metres in a unit of length; `above`: start height over the ground."""
-    body = RigidBody2D(
-        name="b", mass=MASS, inertia=0.1 * unit**2, position=(0.0, (HEIGHT + above) * unit), angle=-above
-    )
-    feet = [
-        DiskOnHalfPlane2D(
-            name=f"f{i}", plane=HalfPlane2D(), law=DULL,
-            disk=Disk2D(marker=Marker2D(body="b", point=(places[i] * unit, -HEIGHT * unit))),
-            friction=CoulombFriction(coefficient=0.3), compliance=compliance[i],
-        )
-        for i in order
-    ]  # fmt: skip
-    return Model(gravity=(0.0, -G * unit), bodies=[body], contacts=feet, forces=list(forces))
-
-
-def area(compliance, order=range(4), radius=0.05):
-    """A block on feet that are balls."""
-    body = RigidBody3D(name="b", mass=MASS, inertia=(0.1, 0.1, 0.1), position=(0.0, 0.0, HEIGHT + radius))
-    feet = [
-        SphereOnHalfSpace3D(
-            name=f"f{i}", plane=HalfSpace3D(), law=DULL, compliance=compliance[i],
-            sphere=Sphere3D(marker=Marker3D(body="b", point=(*AREA[i], -HEIGHT)), radius=radius),
-        )
-        for i in order
-    ]  # fmt: skip
-    return Model(gravity=(0.0, 0.0, -G), bodies=[body], contacts=feet)
-
 
 def forces(rest, count):
     return np.array([rest[f"f{i}.normal_force"] for i in range(count)])
@@ -76,7 +35,7 @@ def forces(rest, count):
 @pytest.mark.parametrize("above", [0.0, 0.05])
 @pytest.mark.parametrize("compliance", [(1.0, 1.0, 1.0), (1.0, 2.0, 5.0)])
 def test_feet_in_a_line_share_the_weight_in_any_order(compliance, above):
-    wanted = least(np.array([np.ones(3), PLACES]), np.array([MASS * G, 0.0]), compliance)
+    wanted = least(ON_LINE, np.array([MASS * G, 0.0]), compliance)
     for order in itertools.permutations(range(3)):
         rest = static_equilibrium(line(compliance, order, above=above))
         assert forces(rest, 3) == pytest.approx(wanted, rel=1e-9)
@@ -85,15 +44,14 @@ def test_feet_in_a_line_share_the_weight_in_any_order(compliance, above):
 
 @pytest.mark.parametrize("compliance", [(1.0, 1.0, 1.0, 1.0), (1.0, 2.0, 3.0, 0.5)])
 def test_feet_in_an_area_share_the_weight_in_any_order(compliance):
-    matrix = np.vstack([np.ones(4), np.array(AREA).T])
-    wanted = least(matrix, np.array([MASS * G, 0.0, 0.0]), compliance)
+    wanted = least(ON_AREA, np.array([MASS * G, 0.0, 0.0]), compliance)
     for order in itertools.islice(itertools.permutations(range(4)), 0, 24, 5):
-        assert forces(static_equilibrium(area(compliance, order)), 4) == pytest.approx(wanted, rel=1e-9)
+        assert forces(static_equilibrium(area(compliance, order, mu=0.0)), 4) == pytest.approx(wanted, rel=1e-9)
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1e3])
 def test_units_do_not_matter(unit):
-    wanted = unit * least(np.array([np.ones(3), PLACES]), np.array([MASS * G, 0.0]), (1.0, 2.0, 5.0))
+    wanted = unit * least(ON_LINE, np.array([MASS * G, 0.0]), (1.0, 2.0, 5.0))
     rest = static_equilibrium(line((1.0, 2.0, 5.0), unit=unit))
     assert forces(rest, 3) == pytest.approx(wanted, rel=1e-8)
 
@@ -116,7 +74,7 @@ def test_a_foot_that_would_pull_carries_nothing():
         constraints={"type": "eq", "fun": lambda f: matrix @ f - wanted}, options={"maxiter": 1000},
     ).x  # fmt: skip
     for order in [range(5), (4, 2, 0, 3, 1), (1, 0, 3, 2, 4)]:
-        rest = static_equilibrium(line(compliance, order, places, forces=[push]))
+        rest = static_equilibrium(line(compliance, order, places=places, forces=[push]))
         assert forces(rest, 5) == pytest.approx(found, abs=1e-3)
         assert matrix @ forces(rest, 5) == pytest.approx(wanted, rel=1e-10)
         loaded = forces(rest, 5) > 1e-6
@@ -170,8 +128,7 @@ def test_a_box_between_two_fixed_floors_of_contacts_keeps_its_weight_below():
         for i in range(4)
     ]  # fmt: skip
     rest = static_equilibrium(Model(gravity=(0.0, 0.0, -G), bodies=[body], contacts=contacts))
-    matrix = np.vstack([np.ones(4), np.array(AREA).T])
-    assert forces(rest, 4) == pytest.approx(least(matrix, np.array([MASS * G, 0.0, 0.0]), np.ones(4)), rel=1e-9)
+    assert forces(rest, 4) == pytest.approx(least(ON_AREA, np.array([MASS * G, 0.0, 0.0]), np.ones(4)), rel=1e-9)
     assert [rest[f"above{i}.normal_force"] for i in range(4)] == pytest.approx([0.0] * 4, abs=1e-9)
 
 

@@ -10,13 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from blocks_on_feet import DULL, HEIGHT, MASS, ON_AREA, ON_LINE, PLACES, G, area, least, line
 from indeterminate_scenes import scene
 from scene_checks import deviations, wrong
 from tlismni.core import (
     AppliedForce2D,
     ContactGroup2D,
     ContactGroup3D,
-    CoulombFriction,
     Disk2D,
     DiskOnHalfPlane2D,
     Distance2D,
@@ -37,18 +37,13 @@ from tlismni.core import (
     RigidBody3D,
     Simulation,
     Sphere3D,
-    SphereOnHalfSpace3D,
     compile_model,
     contacts_between,
     simulate,
 )
 from units import Units
 
-G, MASS, HEIGHT = 9.81, 3.0, 0.3
-DULL = NewtonImpact(restitution=0.0)
 METHODS = ["ebdf", "irk", "hht"]
-PLACES = (-0.3, 0.1, 0.4)
-AREA = [(-0.2, -0.25), (0.2, -0.2), (-0.15, 0.2), (0.25, 0.2)]
 SHARES = {"alike": (2.0, 2.0, 2.0, 2.0), "near": (1.0, 2.0, 3.0, 0.5), "far": (1.0, 100.0, 0.02, 3.0)}
 
 
@@ -60,46 +55,8 @@ def _quiet():
     logging.getLogger("tlismni").setLevel(logging.NOTSET)
 
 
-def least(matrix, wanted, compliance):
-    """Forces F of least sum c F^2 with matrix F = wanted."""
-    root = 1.0 / np.sqrt(np.asarray(compliance, dtype=float))
-    return root * np.linalg.lstsq(matrix * root, wanted, rcond=None)[0]
-
-
-def line(compliance, order=range(3), mu=0.3, places=PLACES, law=DULL, velocity=(0.0, 0.0), forces=(), **more):
-    """A block on feet in a line; `mu`: of each foot, 0: without friction."""
-    body = RigidBody2D(name="b", mass=MASS, inertia=0.1, position=(0.0, HEIGHT), velocity=velocity)
-    mu = [mu] * len(places) if np.ndim(mu) == 0 else mu
-    feet = [
-        DiskOnHalfPlane2D(
-            name=f"f{i}", plane=HalfPlane2D(), disk=Disk2D(marker=Marker2D(body="b", point=(places[i], -HEIGHT))),
-            law=law, friction=CoulombFriction(coefficient=mu[i]) if mu[i] > 0.0 else None, compliance=compliance[i],
-        )
-        for i in order
-    ]  # fmt: skip
-    return Model(gravity=(0.0, -G), bodies=[body], contacts=feet, forces=list(forces), **more)
-
-
-def area(compliance, order=range(4), law=DULL, **more):
-    """A block on four feet; `more`: of the body."""
-    given = {"position": (0.0, 0.0, HEIGHT), **more}
-    body = RigidBody3D(name="b", mass=MASS, inertia=(0.1, 0.1, 0.08), **given)
-    feet = [
-        SphereOnHalfSpace3D(
-            name=f"f{i}", plane=HalfSpace3D(), sphere=Sphere3D(marker=Marker3D(body="b", point=(*AREA[i], -HEIGHT))),
-            law=law, friction=CoulombFriction(coefficient=0.3), compliance=compliance[i],
-        )
-        for i in order
-    ]  # fmt: skip
-    return Model(gravity=(0.0, 0.0, -G), bodies=[body], contacts=feet)
-
-
 def read(result, what="normal_force", count=3, row=-1):
     return np.array([result[f"f{i}.{what}"][row] for i in range(count)])
-
-
-ON_LINE = np.array([np.ones(3), PLACES])
-ON_AREA = np.array([[1.0, x, y] for x, y in AREA]).T
 
 
 # ---- normal forces --------------------------------------------------------------------------------------------------
