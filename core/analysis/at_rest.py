@@ -10,6 +10,7 @@ from ..assembly.assembly import Assembly
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..assembly.partition import choose_dependent
 from ..errors import ModelError
+from ..multibody_model import Model
 from ..simulation.simulation import Simulation
 from ..time_loop.sample import write_sample
 
@@ -46,10 +47,13 @@ class Matrices:
         return basis.T @ self.mass @ basis, basis.T @ self.damping @ basis, basis.T @ self.stiffness @ basis
 
 
-def refuse_rate_rows(assembly: Assembly) -> None:
-    """Raise ModelError for a model with velocity-level rows: its positions have more freedom than its velocities."""
-    if assembly.rate_rows:
-        names = sorted({assembly.row_names[row] for row in assembly.rate_rows})
+def refuse_rate_rows(assembly: Assembly, idle: frozenset[str] = frozenset()) -> None:
+    """Raise ModelError for a model with velocity-level rows: its positions have more freedom than its velocities.
+
+    `idle` names contacts whose friction has no part in the analysis: their rows are left out of it.
+    """
+    names = sorted({assembly.row_names[row] for row in assembly.rate_rows} - idle)
+    if names:
         raise ModelError(
             f"{', '.join(repr(name) for name in names)} hold velocities without holding positions (nonholonomic): "
             "analyses of small motions take constraints that hold positions. Replace them by a joint or a force with "
@@ -66,13 +70,19 @@ def run_of(system: Any, t0: float = 0.0, rate_rows: bool = False, **settings: An
     """
     sim = Simulation(system, t0=t0, **settings)
     if not rate_rows:
-        refuse_rate_rows(sim.assembly)
+        refuse_rate_rows(sim.assembly, _idle_friction(system, sim))
     if sim.assembly.n > MOST_COORDINATES:
         raise ModelError(
             f"the system has {sim.assembly.n} coordinates; analyses at rest use dense matrices, up to "
             f"{MOST_COORDINATES}: use a coarser mesh, or a ReducedBody2D"
         )
     return sim
+
+
+def _idle_friction(system: Any, sim: Simulation) -> frozenset[str]:
+    """Names of the contacts whose friction holds nothing at rest: of all but those whose surface moves, which pulls."""
+    moving = {c.name for c in system.contacts if c.surface_speed is not None} if isinstance(system, Model) else set()
+    return frozenset({contact.name for contact in sim.assembly.contacts} - moving)
 
 
 def place(sim: Simulation, q: Floats, lam: Floats) -> None:

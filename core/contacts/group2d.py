@@ -59,7 +59,8 @@ def contacts_between(
     Raises
     ------
     ModelError : for more than MOST_PAIRS pairs, shapes of which no pair can touch, two that have no contact and are not
-        said to pass through each other, and kinds of `pass_through` that are not among the shapes.
+        said to pass through each other, kinds of `pass_through` that are not among the shapes, and a pair declared
+        with a class that is neither a contact of the plane nor of space.
     """
     first = tuple(shapes)
     second = None if others is None else tuple(others)
@@ -85,7 +86,11 @@ def contacts_between(
             own = label if len(touching) == 1 else f"{label}_{k + 1}"
             more = {} if planar else {"turning": turning}
             contact = make(name=own, law=law, friction=friction, compliance=compliance, **more)
-            assert isinstance(contact, Contact2D | Contact3D)
+            if not isinstance(contact, Contact2D | Contact3D):
+                raise ModelError(
+                    f"group '{name}': the contact of two shapes must inherit Contact2D or Contact3D, and "
+                    f"{type(contact).__name__} does not: use such a class where the pair is declared (pair, touching)"
+                )
             made.append(contact)
     if not made:
         raise ModelError(

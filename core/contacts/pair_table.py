@@ -34,8 +34,13 @@ def pair(contact: type[ContactElement], **shapes: type[Record]) -> None:
 
     Raises
     ------
-    TypeError : for other than two fields, or one that the contact does not have.
+    TypeError : for other than two fields, one that the contact does not have, or a class that is no contact.
     """
+    if not (isinstance(contact, type) and issubclass(contact, ContactElement)):
+        raise TypeError(
+            f"a pair is that of a contact, a class that inherits Contact2D or Contact3D, not of {contact!r}: "
+            "ScalarContact2D is one made from formulas"
+        )
     missing = [name for name in shapes if name not in contact.model_fields]
     if len(shapes) != 2 or missing:
         raise TypeError(

@@ -52,7 +52,7 @@ def problems_of(
 ) -> tuple[tuple[str, tuple[Any, ...]], ...]:
     """Each problem in words, and the place in `data` where it is."""
     found: list[tuple[str, tuple[Any, ...]]] = []
-    for problem in error.errors():
+    for problem in _of_nearest_forms(error.errors()):
         words, loc = _clause(problem, record, data), tuple(problem["loc"])
         within = getattr(problem.get("ctx", {}).get("error"), "problems", ())  # of a record inside, which has said so
         if words == "; ".join(clause for clause, _ in within):
@@ -60,6 +60,19 @@ def problems_of(
         else:
             found.append((words, (*loc, *within[0][1]) if within else loc))
     return tuple(found)
+
+
+def _of_nearest_forms(problems: Sequence[Any]) -> list[Any]:
+    """Of a field that takes several forms (six numbers, or six rows of six), the problems of the form that has least,
+    without the form in their places."""
+    forms: dict[tuple[Any, ...], dict[str, list[Any]]] = {}
+    for problem in problems:
+        loc = problem["loc"]
+        # pydantic writes a form as its type, tuple[float, float], which no field can be called
+        at = next((k for k, part in enumerate(loc) if isinstance(part, str) and "[" in part), len(loc))
+        form, rest = (loc[at], loc[at + 1 :]) if at < len(loc) else ("", ())
+        forms.setdefault(loc[:at], {}).setdefault(form, []).append({**problem, "loc": (*loc[:at], *rest)})
+    return [problem for of_place in forms.values() for problem in min(of_place.values(), key=len)]
 
 
 def _clause(problem: Any, record: type[BaseModel], data: Mapping[str, Any]) -> str:

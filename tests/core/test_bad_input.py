@@ -10,6 +10,7 @@ from tlismni.core import (
     AppliedForce2D,
     AppliedTorque2D,
     Bushing2D,
+    Bushing3D,
     ConsistencyError,
     Constant,
     CoordinateDriver,
@@ -23,6 +24,7 @@ from tlismni.core import (
     Input,
     InputSignal,
     Marker2D,
+    Marker3D,
     Model,
     ModelError,
     NewtonImpact,
@@ -156,6 +158,20 @@ def test_no_time_at_all_gives_the_start():
 def test_bad_field_of_a_record_is_named(build, word):
     with pytest.raises(ValueError, match=word):
         build()
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "words"),
+    [((1.0, 2.0, 3.0), ["stiffness.3: it is missing", "stiffness.5: it is missing"]),
+     (((1.0, 2.0, 3.0, 4.0, 5.0, "6"), *((1.0,) * 6,) * 5), ["stiffness.0.5: a number is needed, not the text '6'"])],
+)  # fmt: skip
+def test_a_field_of_several_forms_says_what_the_nearest_form_needs(stiffness, words):
+    """Stiffnesses of a bushing are six numbers or six rows of six; the types of both are not spelled out."""
+    with pytest.raises(ModelError) as refused:
+        Bushing3D(name="mount", a=Marker3D(), b=Marker3D(body="block"), stiffness=stiffness)
+    assert all(word in str(refused.value) for word in words)
+    assert "tuple" not in str(refused.value)
+    assert len(refused.value.problems) < 4
 
 
 def test_whole_numbers_and_numbers_of_numpy_are_numbers():

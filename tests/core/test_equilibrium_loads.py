@@ -10,7 +10,9 @@ from tlismni.core import (
     AppliedForce2D,
     Axes,
     Bushing2D,
+    Bushing3D,
     Constant,
+    CoulombFriction,
     Disk2D,
     DiskOnHalfPlane2D,
     HalfPlane2D,
@@ -18,6 +20,8 @@ from tlismni.core import (
     Marker2D,
     Marker3D,
     Model,
+    ModelError,
+    NewtonImpact,
     RigidBody2D,
     RigidBody3D,
     Sphere3D,
@@ -42,11 +46,45 @@ def test_feet_in_a_line_share_the_weight_in_any_order(compliance, above):
         assert set(rest.closed) == {"f0", "f1", "f2"}
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.4])
 @pytest.mark.parametrize("compliance", [(1.0, 1.0, 1.0, 1.0), (1.0, 2.0, 3.0, 0.5)])
-def test_feet_in_an_area_share_the_weight_in_any_order(compliance):
+def test_feet_in_an_area_share_the_weight_in_any_order(compliance, mu):
+    """Friction holds nothing at rest, in space too, where a contact sticks by rows of velocities."""
     wanted = least(ON_AREA, np.array([MASS * G, 0.0, 0.0]), compliance)
     for order in itertools.islice(itertools.permutations(range(4)), 0, 24, 5):
-        assert forces(static_equilibrium(area(compliance, order, mu=0.0)), 4) == pytest.approx(wanted, rel=1e-9)
+        assert forces(static_equilibrium(area(compliance, order, mu=mu)), 4) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_ball_with_friction_rests_where_one_without_does():
+    """On an incline, held by a spring along it: friction has no part in the place of rest."""
+    rests = []
+    for friction in (None, CoulombFriction(coefficient=0.3)):
+        ball = RigidBody3D(name="ball", mass=1.0, inertia=(0.1, 0.1, 0.1), position=(0.0, 0.0, 0.5))
+        floor = SphereOnHalfSpace3D(
+            name="floor", sphere=Sphere3D(marker=Marker3D(body="ball"), radius=0.5),
+            plane=HalfSpace3D(marker=Marker3D(body="ground")), law=NewtonImpact(restitution=0.0), friction=friction,
+        )  # fmt: skip
+        spring = Bushing3D(
+            name="spring", a=Marker3D(body="ground", point=(0.0, 0.0, 0.5)),
+            b=Marker3D(body="ball"), stiffness=(200.0, 200.0, 0.0, 3.0, 3.0, 3.0),
+        )  # fmt: skip
+        model = Model(bodies=[ball], forces=[spring], contacts=[floor], gravity=(1.0, 0.0, -G))
+        rests.append(static_equilibrium(model))
+    plain, rubbing = rests
+    assert rubbing["ball.x"] == pytest.approx(1.0 / 200.0, rel=1e-9)
+    assert rubbing.q == pytest.approx(plain.q, abs=1e-12)
+    frequencies = [eigenmodes(rest).frequencies for rest in rests]
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-9)
+
+
+def test_a_belt_with_friction_is_refused():
+    """It pulls what rests on it: there is no rest."""
+    model = area((1.0, 1.0, 1.0, 1.0), mu=0.4)
+    belt = model.contacts[0].model_copy(
+        update={"surface_speed": 0.5, "surface_direction": (1.0, 0.0, 0.0), "surface_body": "ground"}
+    )
+    with pytest.raises(ModelError, match=belt.name):
+        static_equilibrium(model.model_copy(update={"contacts": (belt, *model.contacts[1:])}))
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1e3])

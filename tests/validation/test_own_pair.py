@@ -26,6 +26,7 @@ from tlismni.core import (
     scalar_contact,
     simulate,
 )
+from tlismni.core.contacts.pair_table import pair, touching
 from tlismni.fmu_wrapper.slave import Slave
 from tlismni.validation import NotTranslatable, crosscheck
 from tlismni.validation.exudyn_import import exudyn_available
@@ -182,3 +183,20 @@ def test_those_of_the_library_are_distances_from_convex_shapes() -> None:
     DiskOnBox2D(name="box", shape=Box2D(marker=Marker2D(), width=1.0, height=0.3), **given).check_convex()
     corners = ((0.0, 0.0), (1.0, 0.2), (0.4, 0.9))
     DiskOnPolygon2D(name="polygon", shape=Polygon2D(marker=Marker2D(), vertices=corners), **given).check_convex()
+
+
+class _Coin2D(Disk2D):
+    """A shape of which `test_a_pair_of_no_contact_is_refused` declares a pair."""
+
+
+def test_a_pair_of_no_contact_is_refused():
+    with pytest.raises(TypeError, match="'DiskOnLedge2D'"):
+        pair("DiskOnLedge2D", shape=Ledge2D, disk=Disk2D)
+
+    @touching(_Coin2D, Ledge2D)
+    def _bodies(coin, ledge):
+        return (lambda *, name, **_: wheel((0.0, 0.0)).model_copy(update={"name": name}),)
+
+    shapes = [Ledge2D(), _Coin2D(marker=Marker2D(body="wheel"), radius=RADIUS)]
+    with pytest.raises(ModelError, match="RigidBody2D does not"):
+        contacts_between("at", shapes, law=NewtonImpact(restitution=0.0))
