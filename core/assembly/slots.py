@@ -23,6 +23,7 @@ MOST_STRUCTURES = 32
 SLACK = 1.5
 """How much more is given than is asked for."""
 MATRICES = ("kkt", "kkt_query", "lu_d", "lu_p")
+"""Factorisations of a workspace. The last one is there in models with velocity-level rows only."""
 _OF = (OF_KKT, OF_KKT, OF_D, OF_D)
 """Where in `needs` the sizes of each of them begin."""
 _RECORDS = {"structures": (STRUCTURE, 1), "partitions": (PARTITION, 1), "lus": (LU, len(MATRICES))}

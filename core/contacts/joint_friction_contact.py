@@ -33,12 +33,12 @@ from .element import ContactElement
 from .geometry_kinds import JOINT, are
 from .sliding2d import act_sliding
 
-LOAD, SHARE, KIND, SIZE, GAIN, PAIR = 16, 17, 18, 19, 20, 21
+CONSTANT_LOAD, REACTION_SHARE, MEASURE_KIND, SLIDE_UNIT, SLIDE_GAIN, MEASURED_PAIR = 16, 17, 18, 19, 20, 21
 """Columns of the constant part of N, of the part of |F| in N, of the kind of the measure, of the sliding distance by a
 unit of it, of k, and the first of the pair of markers."""
 OWN_ROWS = 2
 """Of gap and sliding distance; those of the joint's force stand behind."""
-PLANAR, SPATIAL = 6, 14
+PLANAR_COORDINATES, SPATIAL_COORDINATES = 6, 14
 
 
 @internal
@@ -51,13 +51,13 @@ def press(b: Any, job: int, e: int, own_rows: int, stop: int) -> None:
         force += lam[row[k]] ** 2
     force = math.sqrt(force)
     if job == RESIDUAL:
-        vec(b.r, b.n_extended)[w] += par[GAIN] * (par[LOAD] + par[SHARE] * force)
+        vec(b.r, b.n_extended)[w] += par[SLIDE_GAIN] * (par[CONSTANT_LOAD] + par[REACTION_SHARE] * force)
     elif job == TANGENT and force > 0.0:
         memory = memories_at(b.memory, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]]
         slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
         of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
         for k in range(own_rows, b.nrow if memory.mode == CLOSED else own_rows):
-            values[of_rows[b.ncoord * k + stop]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
+            values[of_rows[b.ncoord * k + stop]] += par[SLIDE_GAIN] * par[REACTION_SHARE] * lam[row[k]] / force
 
 
 @internal
@@ -65,45 +65,69 @@ def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: An
     """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
     press(b, job, e, OWN_ROWS, 0)
     par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
-    gap, size = vec(b.q, b.n_extended)[w] * par[GAIN], par[SIZE]
+    gap, size = vec(b.q, b.n_extended)[w] * par[SLIDE_GAIN], par[SLIDE_UNIT]
     act_sliding(
-        b, job, t, e, gap, np.full(1, par[GAIN]), vec(b.q, 0), size * s, size * tangent, size * hessian, size * period
+        b,
+        job,
+        t,
+        e,
+        gap,
+        np.full(1, par[SLIDE_GAIN]),
+        vec(b.q, 0),
+        size * s,
+        size * tangent,
+        size * hessian,
+        size * period,
     )
 
 
 @internal
 def joint_friction2d_kernel(job: int, t: float, b: Any) -> None:
-    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, PLANAR + 1), vec(b.q, b.n_extended)
-    tangent, hessian = np.zeros(PLANAR + 1), np.zeros((PLANAR + 1) * (PLANAR + 2) // 2)
+    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, PLANAR_COORDINATES + 1), vec(b.q, b.n_extended)
+    tangent, hessian = (
+        np.zeros(PLANAR_COORDINATES + 1),
+        np.zeros((PLANAR_COORDINATES + 1) * (PLANAR_COORDINATES + 2) // 2),
+    )
     for e in range(b.count):
         p, own = par[e], coord[e, 1:]
-        if int(p[KIND]) == ANGLE:
+        if int(p[MEASURE_KIND]) == ANGLE:
             s = q[own[5]] - q[own[2]]
             tangent[:] = 0.0
             hessian[:] = 0.0
             tangent[3], tangent[6] = -1.0, 1.0
         else:
-            s, gradient, bent = height_over_line(q, own, p[PAIR], p[PAIR + 1], p[PAIR + 2], p[PAIR + 3], p[PAIR + 4])
-            for i in range(PLANAR):
+            s, gradient, bent = height_over_line(
+                q,
+                own,
+                p[MEASURED_PAIR],
+                p[MEASURED_PAIR + 1],
+                p[MEASURED_PAIR + 2],
+                p[MEASURED_PAIR + 3],
+                p[MEASURED_PAIR + 4],
+            )
+            for i in range(PLANAR_COORDINATES):
                 tangent[1 + i] = gradient[i]
             for k in range(len(bent)):
-                hessian[PLANAR + 1 + k] = bent[k]
+                hessian[PLANAR_COORDINATES + 1 + k] = bent[k]
         _rub(b, job, t, e, s, tangent, hessian, 0.0)
 
 
 @internal
 def joint_friction3d_kernel(job: int, t: float, b: Any) -> None:
     par, q = mat(b.par, b.count, b.npar), vec(b.q, b.n_extended)
-    gradient, square = np.empty(SPATIAL), np.empty((SPATIAL, SPATIAL))
-    tangent, hessian = np.zeros(SPATIAL + 1), np.zeros((SPATIAL + 1) * (SPATIAL + 2) // 2)
+    gradient, square = np.empty(SPATIAL_COORDINATES), np.empty((SPATIAL_COORDINATES, SPATIAL_COORDINATES))
+    tangent, hessian = (
+        np.zeros(SPATIAL_COORDINATES + 1),
+        np.zeros((SPATIAL_COORDINATES + 1) * (SPATIAL_COORDINATES + 2) // 2),
+    )
     for e in range(b.count):
-        kind = int(par[e, KIND])
-        own = ivec(b.coord + 8 * (e * b.ncoord + 1), SPATIAL)
-        s = measure(kind, q, own, vec(b.par + 8 * (e * b.npar + PAIR), COLUMNS), 0.0, gradient, square)
-        k = SPATIAL + 1
-        for i in range(SPATIAL):
+        kind = int(par[e, MEASURE_KIND])
+        own = ivec(b.coord + 8 * (e * b.ncoord + 1), SPATIAL_COORDINATES)
+        s = measure(kind, q, own, vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), COLUMNS), 0.0, gradient, square)
+        k = SPATIAL_COORDINATES + 1
+        for i in range(SPATIAL_COORDINATES):
             tangent[1 + i] = gradient[i]
-            for j in range(i, SPATIAL):
+            for j in range(i, SPATIAL_COORDINATES):
                 hessian[k] = square[i, j]
                 k += 1
         _rub(b, job, t, e, s, tangent, hessian, WHOLE_TURN if kind == ANGLE else 0.0)
@@ -175,7 +199,7 @@ class JointFriction(ContactElement):
         raise NotImplementedError(f"{type(self).__name__} must say what its markers are")
 
     def _numbers(self, size: float) -> tuple[float, float]:
-        """LOAD and SHARE."""
+        """CONSTANT_LOAD and REACTION_SHARE."""
         return self.preload / size, self.arm / size
 
 
@@ -184,7 +208,7 @@ class JointFriction2D(JointFriction):
 
     type: Literal["JointFriction2D"] = "JointFriction2D"
     kernel: ClassVar[Any] = joint_friction2d_kernel
-    width: ClassVar[int] = PLANAR
+    width: ClassVar[int] = PLANAR_COORDINATES
 
     a: Marker2D
     """The first marker."""
@@ -202,7 +226,7 @@ class JointFriction2D(JointFriction):
 class SpatialJointFriction(JointFriction):
     """Base of friction of a joint between the bodies of markers in space."""
 
-    width: ClassVar[int] = SPATIAL
+    width: ClassVar[int] = SPATIAL_COORDINATES
 
     a: Marker3D
     """The first marker."""

@@ -14,7 +14,7 @@ from ..model.base import NonNegative, Positive, Vector3
 from ..rounding import BEYOND_END, ON_NODE
 from .base import MOST_ELEMENTS, BodyElement, Numbering, Row
 from .cable2d import SLOPE_SCALE
-from .cable_kernel3d import NODAL, cable3d_kernel
+from .cable_kernel3d import NODAL_IN_SPACE, cable3d_kernel
 from .cable_shape import POINTS, weights
 from .coordinate import Coordinate
 
@@ -48,7 +48,9 @@ class Cable3D(BodyElement):
 
     type: Literal["Cable3D"] = "Cable3D"
     kernel: ClassVar[Any] = cable3d_kernel
-    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = tuple(
+        (i, j) for i in range(NODAL_IN_SPACE) for j in range(NODAL_IN_SPACE)
+    )
 
     elements: Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
     """Number of elements."""
@@ -142,7 +144,7 @@ class Cable3D(BodyElement):
             self.axial_damping, self.reference_strain, *numbering.gravity, *map(float, POINTS[self.integration]),
         )  # fmt: skip
         extra = (numbering.work("dampers"),)
-        return [Row(parameters, own[6 * e : 6 * e + NODAL], extra) for e in range(self.elements)]
+        return [Row(parameters, own[6 * e : 6 * e + NODAL_IN_SPACE], extra) for e in range(self.elements)]
 
     def find(self, s: float) -> tuple[int, float]:
         """(element, place in [0, 1]) of the point at s m along the undeformed cable. Raises ModelError beyond it."""

@@ -44,7 +44,7 @@ NO_SIGNAL = -1
 FULL = tuple((i, j) for i in range(14) for j in range(14))
 
 Measure3D = Literal["angle", "slide", "distance"]
-KINDS: dict[Measure3D, int] = {"angle": ANGLE, "slide": PLACE, "distance": DISTANCE}
+MEASURE_KINDS: dict[Measure3D, int] = {"angle": ANGLE, "slide": PLACE, "distance": DISTANCE}
 
 
 @internal

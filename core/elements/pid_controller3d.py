@@ -20,7 +20,7 @@ from ..model.said_angle import CountedAngle, SaidAngle
 from ..model.signals import INPUT_SIZE, Signal, evaluate_signal
 from .base import BodyElement, Numbering, Part, Row
 from .measure3d import ANGLE, COLUMNS, columns_of, coordinates_of, measure, product
-from .measured_force3d import KINDS, Measure3D, Pair3D
+from .measured_force3d import MEASURE_KINDS, Measure3D, Pair3D
 from .pid_law import PIDLaw
 from .saturation import saturated, slope_rate
 from .start_angle3d import check_start_angle
@@ -168,11 +168,11 @@ class PIDController3D(PIDLaw, Pair3D):
         return (SaidAngle(self.sensing_a, self.sensing_b, self.start_angle, f"'{self.name}'"),)
 
     def row(self, numbering: Numbering) -> Row:
-        a, b, kind = self.sensing_a, self.sensing_b, KINDS[self.senses]
+        a, b, kind = self.sensing_a, self.sensing_b, MEASURE_KINDS[self.senses]
         start, account = 0.0, numbering.frame(Marker3D())[0]
         if kind == ANGLE:
             start, account = numbering.start_angle(a, b, self.name), numbering.work(account_of(self.name), LOOSE)
-        numbers = (float(KINDS[self.measure]), float(kind), start, *self.numbers(numbering, kind == ANGLE))
+        numbers = (float(MEASURE_KINDS[self.measure]), float(kind), start, *self.numbers(numbering, kind == ANGLE))
         columns = (*columns_of(self.a, self.b, numbering), *columns_of(a, b, numbering), *numbers)
         places = (*coordinates_of(self.a, self.b, numbering), *coordinates_of(a, b, numbering))
         extra = (numbering.signal(self.target), numbering.work("input"), account)

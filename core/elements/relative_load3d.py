@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 
 from ..model.signals import Signal
 from .base import BodyElement, Numbering
-from .measured_force3d import KINDS, LOAD, Measure3D, MeasuredForce3D
+from .measured_force3d import LOAD, MEASURE_KINDS, Measure3D, MeasuredForce3D
 
 
 class RelativeLoad3D(MeasuredForce3D):
@@ -25,7 +25,7 @@ class RelativeLoad3D(MeasuredForce3D):
     """Over time, N m or N; positive makes the measure grow."""
 
     def kind(self) -> int:
-        return KINDS[self.measure]
+        return MEASURE_KINDS[self.measure]
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         if self.a.body == self.b.body:

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from ..model.base import NonNegative, Positive
 from ..model.signals import Signal
 from .base import Numbering
-from .measured_force3d import KINDS, SERVO, CountingForce3D, Measure3D
+from .measured_force3d import MEASURE_KINDS, SERVO, CountingForce3D, Measure3D
 from .servo_law import ServoLaw
 
 
@@ -33,7 +33,7 @@ class Servo3D(ServoLaw, CountingForce3D):
     """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
     def kind(self) -> int:
-        return KINDS[self.measure]
+        return MEASURE_KINDS[self.measure]
 
     def signal_in(self, numbering: Numbering) -> int:
         return numbering.signal(self.target)

@@ -24,11 +24,8 @@ from ..model.markers import GROUND, Marker, Marker3D
 from ..model.rotation3d import body_axes, body_rate, cross, dot, four, of_body_torque, plus, three, times
 from ..rounding import TRIANGLE
 from .base import BodyElement, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y, Z
 
-X = Coordinate("x", "m", "vx", "ax")
-Y = Coordinate("y", "m", "vy", "ay")
-Z = Coordinate("z", "m", "vz", "az")
 EULER = tuple(Coordinate(f"e{k}", "1", f"e{k}_rate", f"e{k}_acceleration", 1.0, turns=True) for k in range(4))
 
 

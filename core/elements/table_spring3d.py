@@ -7,7 +7,7 @@ from pydantic import Field
 
 from ..model.base import NonNegative
 from .base import Numbering
-from .measured_force3d import KINDS, TABLE, CountingForce3D, Measure3D
+from .measured_force3d import MEASURE_KINDS, TABLE, CountingForce3D, Measure3D
 from .table_law import TableLaw
 
 
@@ -32,7 +32,7 @@ class TableSpring3D(TableLaw, CountingForce3D):
     """N s/m or N m s/rad."""
 
     def kind(self) -> int:
-        return KINDS[self.measure]
+        return MEASURE_KINDS[self.measure]
 
     def lengths(self) -> Sequence[float]:
         return () if self.measure == "angle" else (self.farthest,)

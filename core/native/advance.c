@@ -199,7 +199,7 @@ tlismni_status advance_begin(tlismni_run *run, double t) {
     }
     WHOLES(run, counts)[EVENTS] = 0;
     times[NOW] = run->beside.now;
-    times[TO] = t;
+    times[ASKED_TIME] = t;
     bool told = !run->model->numbers.inputs || call(run, TELL, run->model->places.exchange) == 1;
     return told ? TLISMNI_OK : INPUT_REFUSED;
 }
@@ -207,9 +207,9 @@ tlismni_status advance_begin(tlismni_run *run, double t) {
 void advance_arrive(tlismni_run *run, double t) {
     double duration = t - run->beside.now, *inputs = REALS(run, inputs), *rates = REALS(run, rates);
     for (int64_t k = 0; k < run->model->numbers.inputs; k++, rates += RATES_SIZE) {
-        if (rates[FIRST] != 0.0 || rates[SECOND] != 0.0) {
-            inputs[k] += duration * (rates[FIRST] + 0.5 * duration * rates[SECOND]);
-            rates[FIRST] += duration * rates[SECOND];
+        if (rates[FIRST_RATE] != 0.0 || rates[SECOND_RATE] != 0.0) {
+            inputs[k] += duration * (rates[FIRST_RATE] + 0.5 * duration * rates[SECOND_RATE]);
+            rates[FIRST_RATE] += duration * rates[SECOND_RATE];
         }
     }
     run->beside.now = t;
@@ -223,7 +223,7 @@ tlismni_status advance_end(tlismni_run *run, tlismni_status status) {
 }
 
 tlismni_status advance_read(tlismni_run *run, double t) {
-    REALS(run, times)[TO] = t;
+    REALS(run, times)[ASKED_TIME] = t;
     return call(run, READ, run->model->places.exchange) == 1 ? TLISMNI_OK : NOT_READ;
 }
 

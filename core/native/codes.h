@@ -4,14 +4,14 @@
 #define TLISMNI_CODES_H
 
 /* columns of `times` (exchange.py), `goals`, `counts`, `clock` (state/run_records.py), `counters` (state/workspace_records.py) */
-enum { NOW, TO, LAST_CHANGE, INTERVAL };
+enum { NOW, ASKED_TIME, LAST_CHANGE, INTERVAL };
 enum { GOAL, LAST_STOP };
 enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
 enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
 enum { STEPS = 0, COUNTERS_SIZE = 14 };
 enum { RATE_SCALE = 15 };
 enum { T0 = 0 };
-enum { FIRST, SECOND, SINCE, RATES_SIZE };
+enum { FIRST_RATE, SECOND_RATE, RATES_SINCE, RATES_SIZE };
 enum { EVENT_SIZE = 9, GAINS = 7 };
 
 /* failures of steps (state/workspace_records.py) */

@@ -94,17 +94,17 @@ tlismni_status tlismni_set_rates(tlismni_run *run, size_t number, double first, 
         return WRONG_INPUT;
     }
     double *rates = REALS(run, rates) + RATES_SIZE * number;
-    rates[FIRST] = first;
-    rates[SECOND] = second;
-    rates[SINCE] = run->beside.now;
+    rates[FIRST_RATE] = first;
+    rates[SECOND_RATE] = second;
+    rates[RATES_SINCE] = run->beside.now;
     return TLISMNI_OK;
 }
 
 void tlismni_rates_of(const tlismni_run *run, size_t number, double *first, double *second, double *since) {
     const double *rates = REALS(run, rates) + RATES_SIZE * number;
-    *first = rates[FIRST];
-    *second = rates[SECOND];
-    *since = rates[SINCE];
+    *first = rates[FIRST_RATE];
+    *second = rates[SECOND_RATE];
+    *since = rates[RATES_SINCE];
 }
 
 const double *tlismni_channels(const tlismni_run *run) {

@@ -9,15 +9,15 @@ import numpy as np
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
-from ..recovery.near_singular import STRAINED
+from ..recovery.near_singular import STRAINED_GROWTH
 from ..recovery.repartition import repair
 from ..rounding import NO_STEP, SHORTEST
 from ..state.run_records import (
     CHUNK,
     DUE,
+    EVENTS_FULL,
     FAILED,
     FIXED_STEP,
-    FULL,
     JAM,
     NEAR_SINGULAR,
     REACHED,
@@ -115,7 +115,7 @@ def _go(sim: "Simulation", t: float, stop: float, hold: bool, first: int, code: 
             sim.take_events()
         returned, code = code, None
         sim.flush()
-        if returned in (CHUNK, FULL):
+        if returned in (CHUNK, EVENTS_FULL):
             sim.report_progress(sim.t_internal)
         elif returned == REACHED:
             if not divided.go_on() or sim.t_internal >= max(t, divided.until):
@@ -231,7 +231,7 @@ def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
 def _pass_after_all(sim: "Simulation") -> bool:
     """Step over a singular position because steps towards it have failed; False if there is none."""
     rate = sim.workspace.arrays["rate"]
-    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
     return bool(near) and _pass_singular(sim, last_resort=True)
 
 

@@ -10,8 +10,8 @@ from ..compiled.image import Take, twin
 from ..compiled.records import ArrayRecord
 from ..tolerances import DEFAULT_ATOL, OfScales
 from . import begin_record as places
-from .begin_record import BEGIN, BEGIN_SIZE, FOUND_SIZE, LATER
-from .settings import KINDS, Settings
+from .begin_record import BEGIN, BEGIN_SIZE, LATER, START_FOUND_SIZE
+from .settings import TOLERANCE_KINDS, Settings
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -32,7 +32,7 @@ class Beginning:
     def __init__(self, sim: "Engine") -> None:
         assembly = sim.assembly
         n, given = assembly.n, assembly.row_scale is not None
-        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1, "found": FOUND_SIZE}
+        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1, "found": START_FOUND_SIZE}
         self.record = ArrayRecord(
             BEGIN,
             {
@@ -54,12 +54,14 @@ class Beginning:
     def _set_settings(self, s: Settings, share: float) -> None:
         """`share`: of the tolerances that were asked for, what steps are held to."""
         numbers = self.numbers
-        numbers[places.T0], numbers[places.START_TOLERANCE] = s.t0, s.start_tolerance
-        numbers[places.STEP], numbers[places.FIRST_STEP] = s.step or 0.0, s.first_step or 0.0
-        numbers[places.NEWTON_TOLERANCE] = s.newton_tolerance or 0.0
+        numbers[places.T0], numbers[places.GIVEN_START_TOLERANCE] = s.t0, s.start_tolerance
+        numbers[places.GIVEN_STEP], numbers[places.GIVEN_FIRST_STEP] = s.step or 0.0, s.first_step or 0.0
+        numbers[places.GIVEN_TOLERANCE] = s.newton_tolerance or 0.0
         numbers[places.LOOK_AT_RANK] = float(s.redundant != "refuse")
         for kind, place in zip(
-            KINDS, (places.LENGTHS, places.ANGLES, places.SPEEDS, places.ANGULAR_SPEEDS), strict=True
+            TOLERANCE_KINDS,
+            (places.LENGTH_TOLERANCE, places.ANGLE_TOLERANCE, places.SPEED_TOLERANCE, places.ANGULAR_SPEED_TOLERANCE),
+            strict=True,
         ):
             atol = s.atol.get(kind, DEFAULT_ATOL) if not isinstance(s.atol, int | float) else s.atol
             numbers[place], numbers[place + places.OF_SCALES] = share * float(atol), float(isinstance(atol, OfScales))
@@ -84,7 +86,7 @@ class Beginning:
         this one has start values of its own, which its scales do not follow."""
         arrays = self.record.arrays
         arrays["q0"][:], arrays["v0"][:], arrays["usual_v0"][:] = assembly.q0, assembly.v0, (model or assembly).v0
-        self.numbers[places.LENGTH], self.numbers[places.LONGEST_STEP] = assembly.length, assembly.longest_step
+        self.numbers[places.GIVEN_LENGTH], self.numbers[places.LONGEST_STEP] = assembly.length, assembly.longest_step
         for name, size in assembly.work_sizes.items():
             arrays["work_sizes"][assembly.work_index(name)] = size
         if assembly.row_scale is not None:

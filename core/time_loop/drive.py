@@ -30,8 +30,8 @@ from ..state.run_records import (
     DRIVE_TYPE,
     DUE,
     EVENT,
+    EVENTS_FULL,
     FAILED,
-    FULL,
     GOAL,
     GOALS_SIZE,
     HANDLED,
@@ -120,7 +120,7 @@ def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) ->
         side = 0.0 if code == DUE else side
         if code == DUE and workspace.n_redundant == 0:
             if loop.capacity > 0 and ivec(loop.cursor, 1)[0] >= loop.capacity:
-                return FULL
+                return EVENTS_FULL
             status = call_settle(drive.pass_breakpoint, drive)
             if status != SETTLED:
                 counts[STATUS] = status

@@ -309,25 +309,25 @@ def test_numbers_of_c_are_those_of_python():
             name, _, value = (part.strip() for part in item.partition("="))
             last = int(value) if value else last + 1
             found[name] = last
-    other_names = {"TO": "GOAL", "SETTLE_IT": "SETTLE", "EVENT_FAILED": "FAILED", "WAS_READ": "READ",
+    other_names = {"SETTLE_IT": "SETTLE", "EVENT_FAILED": "FAILED", "WAS_READ": "READ",
                    "NOT_SETTLED": "DECLINED"}  # fmt: skip
     checked = 0
     for module, names in (
-        (exchange, ("NOW", "TO", "LAST_CHANGE", "INTERVAL", "ARRIVED", "WAS_READ")),
+        (exchange, ("NOW", "ASKED_TIME", "LAST_CHANGE", "INTERVAL", "ARRIVED", "WAS_READ")),
         (records, ("GOAL", "LAST_STOP", "BUDGET", "HANDLED", "HERE", "EVENTS", "STATUS", "STEP_SIZE", "TRIAL_STEP",
                    "EVENT_SIZE", "GAINS", "REACHED", "EVENT", "FULL", "CHUNK", "STEP_TOO_SMALL", "REPARTITION",
                    "NEAR_SINGULAR", "VIOLATED", "UNLOCATED", "DUE", "SETTLE_IT", "JAM", "WANTED", "EVENT_FAILED")),
         (system, ("OUTER_DIVERGED", "INNER_DIVERGED", "SINGULAR", "REANALYZE", "NOT_FINITE", "OUTER_SLOW", "STEPS",
                   "COUNTERS_SIZE", "RATE_SCALE")),
         (begin_record, ("T0",)),
-        (exchange_record, ("FIRST", "SECOND", "SINCE", "RATES_SIZE")),
+        (exchange_record, ("FIRST_RATE", "SECOND_RATE", "RATES_SINCE", "RATES_SIZE")),
         (events, ("SETTLED", "NOT_SETTLED")),
     ):  # fmt: skip
         for name in names:
             assert found[name] == getattr(module, other_names.get(name, name)), name
             checked += 1
     head = re.search(r"typedef struct \{(.*?)\} Head;", (NATIVE / "image.h").read_text(), re.S)[1]
-    assert tuple(re.findall(r"\b(?!int64_t)[a-z_]+\b", head)) == layouts.HEAD
+    assert tuple(re.findall(r"\b(?!int64_t)[a-z_]+\b", head)) == layouts.IMAGE_HEAD
     for name, fields in (("Numbers", layouts.NUMBERS), ("Places", layouts.PLACES)):
         body = re.findall(r"typedef struct \{([^{}]*?)\} " + name + ";", (NATIVE / "image.h").read_text())[0]
         assert tuple(re.findall(r"\b(?!int64_t|double)[a-z_0-9]+\b", body)) == fields
