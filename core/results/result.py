@@ -15,7 +15,7 @@ from ..multibody_model import Model
 from ..state.run_records import LOG_COLUMNS
 
 if TYPE_CHECKING:
-    from ...viewer import Animation
+    from .animation import Animation
 
 
 class Table(Protocol):
@@ -198,12 +198,12 @@ class Result:
         Raises
         ------
         ModelError : for a result of user-written equations, or options that do not fit.
-        ImportError : for a film without the library that writes it.
+        ImportError : for a film without the library that writes it, and where no installed package animates results.
         """
-        from ...viewer.animation import animate
+        from .animation import animator
 
         film = {name: options.pop(name) for name in ("fps", "seconds", "width") if name in options}
-        made = animate(self, model, **options)
+        made = animator()(self, model, **options)
         if path is not None:
             made.save(path, **film)
         return made

@@ -95,6 +95,12 @@ def test_arrows_between_folders_point_one_way(folders):
     assert circle({**folders, "linalg": folders["linalg"] | {"simulation"}}) is not None
 
 
+def test_the_core_knows_none_of_the_packages_beside_it(graph):
+    for name, targets in graph.items():
+        if name.startswith("core"):
+            assert all(target.startswith("core") for target in targets), name
+
+
 BELOW_SIMULATION = (
     "compiled model elements laws linalg contacts state assembly stage methods contact_solvers event_detection events "
     "time_loop equations"
