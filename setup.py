@@ -1,5 +1,5 @@
-"""Builds the FMU shim (fmu_wrapper/fmi/*.c, fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of the
-core where it is asked for; everything else stands in pyproject.toml.
+"""Builds the FMU shim (fmu_wrapper/fmi/*.c, fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of
+the core where it is asked for; everything else stands in pyproject.toml.
 
 An installation from the sources unpacks the library that the repository has for this machine, if it is of these very
 sources (`core/aot/packed.py`).

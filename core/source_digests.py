@@ -27,8 +27,8 @@ def core_digest() -> str:
 
 
 def c_sources(pattern: str = "*.c") -> list[Path]:
-    """The C sources that belong in the library: those in a folder `native` of any part of the package, and the functions of
-    FMI."""
+    """The C sources that belong in the library: those in a folder `native` of any part of the package, and the
+    functions of FMI."""
     return sorted([*_CORE.parent.glob(f"*/native/{pattern}"), *_CORE.parent.glob(f"fmu_wrapper/fmi/{pattern}")])
 
 
