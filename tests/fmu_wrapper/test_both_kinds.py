@@ -16,7 +16,7 @@ from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.fmi3_calls import REFUSED
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="FMUs without Python are made of the library of machine code")
-CALLS = 600
+CALLS = 400
 ERROR = 3
 STEPS = (0.05, 0.05, 0.3, 1e-3, 0.0, -0.1, math.nan, math.inf, 1e-30)
 PUSHES = (0.0, 1.0, 25.0, -3.0, math.nan, math.inf)
@@ -167,7 +167,7 @@ def random_call(rng, three):
     return name, calls[name]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1])
 @pytest.mark.parametrize(("version", "events"), [("2.0", False), ("3.0", False), ("3.0", True)])
 def test_calls_in_any_order_get_the_same_answers(version, events, seed, tmp_path):
     """Legal and illegal ones: the same status, the same bits, and one line in the log for an error."""
