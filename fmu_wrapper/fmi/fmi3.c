@@ -48,7 +48,7 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String toke
                                                 fmi3IntermediateUpdateCallback update) {
     (void)visible; /* there is nothing to show */
     Host host = host_of(environment, logger);
-    Asked asked = {3, logging_on, event_mode, early_return, intermediate, intermediate ? intermediates : 0};
+    Asked asked = {3, logging_on, event_mode, early_return, intermediate, update ? intermediates : 0};
     host.update = update ? update_of_host : NULL;
     host.updater = (void (*)(void))update;
     return instantiate(&host, &asked, __func__, name, token, resources);

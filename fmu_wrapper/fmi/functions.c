@@ -4,14 +4,18 @@
 
 #include "location.h"
 
-bool are_given(const Slave *c, const char *function, const void *items, size_t count) {
-    const Host *host = slave_host(c);
-    if (host && count && (!items || count > PTRDIFF_MAX / sizeof(double))) {
+static bool are_there(const Host *host, const char *function, const void *items, size_t count) {
+    if (count && (!items || count > PTRDIFF_MAX / sizeof(double))) {
         host_error(host, function, "FmuValueError: NULL was given for an array or an answer, or a length beyond all memory: "
                    "pass its address, and its length");
         return false;
     }
-    return host != NULL;
+    return true;
+}
+
+bool are_given(const Slave *c, const char *function, const void *items, size_t count) {
+    const Host *host = slave_host(c);
+    return host && are_there(host, function, items, count);
 }
 
 bool is_given(const Slave *c, const char *function, const void *answer) {
@@ -42,7 +46,9 @@ Slave *instantiate(Host *host, const Asked *asked, const char *function, const c
     char *resources = resource_location ? location_path(resource_location) : NULL;
     host->name = text_copy(name && *name ? name : "instance");
     host->heard = host_heard(asked->logging_on);
-    if (!resource_location) {
+    if (!are_there(host, function, asked->intermediate, asked->intermediates)) {
+        made = NULL;
+    } else if (!resource_location) {
         host_error(host, function, "the resource location is NULL: the URI of the FMU's resources folder is needed");
     } else if (!resources || !host->name) {
         host_error(host, function, "there is no memory left for an instance");

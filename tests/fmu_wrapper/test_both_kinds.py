@@ -258,6 +258,28 @@ def test_in_an_intermediate_update(tmp_path):
     assert found[0] == found[1]
 
 
+def test_null_and_absurd_numbers_of_intermediate_variables_make_no_instance(tmp_path):
+    for given in Both(tmp_path, "3.0").instances:
+        description = fmpy.read_model_description(given.fmu.unzipDirectory)
+        function = ctypes.CDLL(given.fmu.dll._name).fmi3InstantiateCoSimulation
+        function.restype = ctypes.c_void_p
+        lines = []
+        pattern = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+        logger, update = pattern(lambda e, s, c, m, lines=lines: lines.append(m.decode())), ctypes.CFUNCTYPE(None)(list)
+        token, resources = description.instantiationToken.encode(), f"{given.fmu.unzipDirectory}/resources/".encode()
+        flags = [ctypes.c_bool(False)] * 4
+        some = (ctypes.c_uint32 * 1)(1)
+        for references, count in ((None, 1), (some, 2**62), (some, 2**64 - 1)):
+            wanted = references, ctypes.c_size_t(count), None
+            assert not function(b"it", token, resources, *flags, *wanted, logger, update)
+            assert "fmi3InstantiateCoSimulation: FmuValueError: NULL was given for an array" in lines[-1]
+        assert len(lines) == 3
+        # nobody looks at them without a callback
+        made = function(b"it", token, resources, *flags, None, ctypes.c_size_t(1), None, logger, None)
+        assert made and len(lines) == 3
+        ctypes.CDLL(given.fmu.dll._name).fmi3FreeInstance(ctypes.c_void_p(made))
+
+
 def test_a_freed_instance_and_none(tmp_path):
     """Error, in silence; nothing is freed twice."""
     for instance in Both(tmp_path, "3.0").instances:
