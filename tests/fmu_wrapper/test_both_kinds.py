@@ -88,10 +88,11 @@ class Instance:
 class Both:
     """An instance of each kind."""
 
-    def __init__(self, folder, version, **how):
+    def __init__(self, folder, version, solver=None, **how):
         self.instances = []
         for native in (False, True):
-            path = export_fmu(ball_model(), folder / f"{native}.fmu", version, native=native, t_end=3.0)
+            settings = {"t_end": 3.0, **(solver or {})}
+            path = export_fmu(ball_model(), folder / f"{native}.fmu", version, native=native, **settings)
             unzipped = fmpy.extract(str(path), unzipdir=str(folder / str(native)))
             self.instances.append(Instance(unzipped, version, **how))
 
@@ -116,23 +117,21 @@ def nothing(answer):
     """Where what a call answers with belongs to one instance."""
 
 
-def random_call(rng, three):
-    """What a call is, and the call, for any instance."""
-    k, h, t, u = rng.randrange(9), rng.choice(STEPS), rng.choice(TIMES), rng.choice(PUSHES)
-    order, slip = rng.choice((1, 1, 1, 0, 2, 3)), rng.choice((0.0,) * 9 + (0.7,))
-    whole, stop = rng.choice(("solver.events", "floor.mode", "ball.y")), rng.choice((None, 3.0, 0.2, math.nan))
-    output = rng.choice(("ball.y", "ball.vy", "ball.ay", "push", "mass", "time", "no variable", "floor.mode"))
-    known = rng.choice(("push", "push", "mass", "ball.y"))
+def calls_of(
+    three, k=0, h=0.05, slip=0.0, t=0.0, stop=None, u=1.0, order=1, output="ball.y", known="push", whole="solver.events"
+):
+    """Calls by name, each for any instance."""
 
     def step(i):
         now = i.get(i.named("time"))[0]
-        return i.fmu.doStep(now + slip, h) if i.three else nothing(i.fmu.doStep(now + slip, h))
+        return i.fmu.doStep(now + slip, h) if three else nothing(i.fmu.doStep(now + slip, h))
 
     calls = {
         "begin": lambda i: i.begin(t, stop),
         "enter": lambda i: nothing(i.fmu.enterInitializationMode()),
         "exit": lambda i: nothing(i.fmu.exitInitializationMode()),
         "step": step,
+        "step from the start": lambda i: nothing(i.fmu.doStep(0.0, h)),
         "get": lambda i: list(i.get(i.named(output, "time"))),
         "get none": lambda i: list(i.get([])),
         "get wholes": lambda i: i.wholes(whole),
@@ -149,22 +148,73 @@ def random_call(rng, three):
         "reset": lambda i: nothing(i.fmu.reset()),
     }
     if three:
-        calls |= {
+        return calls | {
             "event mode": lambda i: nothing(i.fmu.enterEventMode()),
             "update": lambda i: [bool(x) for x in i.fmu.updateDiscreteStates()[:5]],
             "step mode": lambda i: nothing(i.fmu.enterStepMode()),
             "refused": lambda i: nothing(i.fmu.getFloat32(i.named("push"))),
             "room": lambda i: list(i.fmu.getFloat64(i.named("ball.y"), 2)),
             "get enumeration": lambda i: list(i.fmu.getInt64(i.named(whole))),
+            "set whole": lambda i: nothing(i.fmu.setInt32(i.named(whole), [1])),
         }
-    else:
-        calls |= {
-            "input rates": lambda i: nothing(i.fmu.setRealInputDerivatives(i.named("push"), [order], [u])),
-            "cancel": lambda i: nothing(i.fmu.cancelStep()),
-        }
-    rare = {"terminate": 0.1, "reset": 0.2, "begin": 0.5}
-    name = rng.choices(list(calls), [rare.get(c, 4.0 if c == "step" else 1.0) for c in calls])[0]
+    return calls | {
+        "input rates": lambda i: nothing(i.fmu.setRealInputDerivatives(i.named("push"), [order], [u])),
+        "cancel": lambda i: nothing(i.fmu.cancelStep()),
+        "set whole": lambda i: nothing(i.fmu.setInteger(i.named(whole), [1])),
+    }
+
+
+def random_call(rng, three):
+    """What a call is, and the call."""
+    calls = calls_of(
+        three, rng.randrange(9), rng.choice(STEPS), rng.choice((0.0,) * 9 + (0.7,)), rng.choice(TIMES),
+        rng.choice((None, 3.0, 0.2, math.nan)), rng.choice(PUSHES), rng.choice((1, 1, 1, 0, 2, 3)),
+        rng.choice(("ball.y", "ball.vy", "ball.ay", "push", "mass", "time", "no variable", "floor.mode")),
+        rng.choice(("push", "push", "mass", "ball.y")), rng.choice(("solver.events", "floor.mode", "ball.y")),
+    )  # fmt: skip
+    rare = {"terminate": 0.1, "reset": 0.2, "begin": 0.5, "step": 4.0}
+    name = rng.choices(list(calls), [rare.get(name, 1.0) for name in calls])[0]
     return name, calls[name]
+
+
+WAYS = {
+    "instantiated": (),
+    "initialization": ("begin",),
+    "step": ("begin", "exit", "update", "step mode"),
+    "event due": ("begin", "exit", "update", "step mode", "to the floor"),
+    "event": ("begin", "exit"),
+    "failed": ("begin", "exit", "update", "step mode", "too long"),
+    "terminated": ("begin", "exit", "terminate"),
+}
+"""How to come to each phase."""
+
+
+@pytest.mark.parametrize(("version", "events"), [("2.0", False), ("3.0", False), ("3.0", True)])
+def test_each_call_in_each_phase(version, events, tmp_path):
+    """It is allowed by both kinds or by none, and does the same."""
+    how = {"eventModeUsed": True, "earlyReturnAllowed": True} if events else {}
+    both, three, allowed = Both(tmp_path, version, {"step": 1e-3, "max_steps": 1000}, **how), version == "3.0", {}
+    for phase, way in WAYS.items():
+        if phase.startswith("event") and not events:
+            continue
+        for name, call in calls_of(three).items():
+            for instance in both.instances:
+                instance.fmu.reset()
+                instance.states.clear()
+            do = calls_of(three) | {"to the floor": calls_of(three, h=0.9)["step"]}
+            for part in way:
+                if part == "too long":  # away from the floor, in more steps of the solver than are allowed
+                    both.same("push", lambda i: nothing(i.set(i.named("push"), [25.0])))
+                    assert both.same(part, calls_of(three, h=2.5)["step"]) is None
+                elif events or part not in ("update", "step mode"):
+                    assert both.same(part, do[part]) is not None
+                if part == "exit":
+                    both.same("store", lambda i: i.store())
+            allowed[phase, name] = both.same(f"{name} in phase {phase}", call) is not None
+    assert not allowed["instantiated", "step from the start"] and allowed["step", "step from the start"]
+    assert not allowed["failed", "step from the start"] and allowed["failed", "restore"]
+    assert not allowed["failed", "store"] and not allowed["terminated", "push"] and allowed["terminated", "get"]
+    assert allowed["initialization", "set parameter"] and not allowed["step", "set parameter"]
 
 
 @pytest.mark.parametrize("seed", [1])
