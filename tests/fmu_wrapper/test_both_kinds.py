@@ -16,10 +16,10 @@ from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.fmi3_calls import REFUSED
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="FMUs without Python are made of the library of machine code")
-CALLS = 400
+CALLS = 600
 ERROR = 3
 STEPS = (0.05, 0.05, 0.3, 1e-3, 0.0, -0.1, math.nan, math.inf, 1e-30)
-PUSHES = (0.0, 1.0, 25.0, -3.0, math.nan, math.inf)
+PUSHES = (0.0, 1.0, 25.0, -3.0, 1.0, 0.5, math.nan, math.inf)
 TIMES = (0.0, 0.0, 0.0, 0.5, -1.0, math.nan)
 
 
@@ -89,12 +89,15 @@ class Both:
     """An instance of each kind."""
 
     def __init__(self, folder, version, solver=None, **how):
-        self.instances = []
+        self._version, self._how, self._folders = version, how, []
         for native in (False, True):
             settings = {"t_end": 3.0, **(solver or {})}
             path = export_fmu(ball_model(), folder / f"{native}.fmu", version, native=native, **settings)
-            unzipped = fmpy.extract(str(path), unzipdir=str(folder / str(native)))
-            self.instances.append(Instance(unzipped, version, **how))
+            self._folders.append(fmpy.extract(str(path), unzipdir=str(folder / str(native))))
+        self.instances = self.new_instances()
+
+    def new_instances(self):
+        return [Instance(unzipped, self._version, **self._how) for unzipped in self._folders]
 
     def same(self, what, call):
         """The answer to a call, which both give: None is an error, of which each has logged one line."""
@@ -166,12 +169,32 @@ def calls_of(
 
 def random_call(rng, three):
     """What a call is, and the call."""
+    outputs = (
+        "ball.y",
+        "ball.y",
+        "ball.vy",
+        "ball.vy",
+        "ball.ay",
+        "ball.ay",
+        "push",
+        "mass",
+        "time",
+        "floor.mode",
+        "none",
+    )
     calls = calls_of(
-        three, rng.randrange(9), rng.choice(STEPS), rng.choice((0.0,) * 9 + (0.7,)), rng.choice(TIMES),
-        rng.choice((None, 3.0, 0.2, math.nan)), rng.choice(PUSHES), rng.choice((1, 1, 1, 0, 2, 3)),
-        rng.choice(("ball.y", "ball.vy", "ball.ay", "push", "mass", "time", "no variable", "floor.mode")),
-        rng.choice(("push", "push", "mass", "ball.y")), rng.choice(("solver.events", "floor.mode", "ball.y")),
-    )  # fmt: skip
+        three,
+        k=rng.randrange(9),
+        h=rng.choice(STEPS),
+        slip=rng.choice((0.0,) * 9 + (0.7,)),
+        t=rng.choice(TIMES),
+        stop=rng.choice((None, 3.0, 0.2, math.nan)),
+        u=rng.choice(PUSHES),
+        order=rng.choice((1, 1, 1, 0, 2, 3)),
+        output=rng.choice(outputs),
+        known=rng.choice(("push",) * 6 + ("mass", "ball.y")),
+        whole=rng.choice(("solver.events", "floor.mode", "ball.y")),
+    )
     rare = {"terminate": 0.1, "reset": 0.2, "begin": 0.5, "step": 4.0}
     name = rng.choices(list(calls), [rare.get(name, 1.0) for name in calls])[0]
     return name, calls[name]
@@ -231,6 +254,34 @@ def test_calls_in_any_order_get_the_same_answers(version, events, seed, tmp_path
     ends = sum(fine for fine, _ in done.values())
     assert 0.2 < ends / CALLS < 0.9
     assert all(done[name][0] for name in ("exit", "step", "get", "push", "derivative", "rates", "restore", "carry"))
+
+
+def test_room_that_is_refused_changes_nothing(tmp_path):
+    """The solver is not told the inputs of that moment, which are others before it goes on."""
+    both = Both(tmp_path, "3.0")
+    plain = both.new_instances()
+    for instance in (*both.instances, *plain):
+        instance.begin()
+        instance.fmu.exitInitializationMode()
+        instance.fmu.doStep(0.0, 0.001)
+    found = []
+    for instance in both.instances:
+        instance.set(instance.named("push"), [-3.0])
+        for call in (
+            lambda i: i.fmu.getFloat64(i.named("ball.y"), 2),
+            lambda i: i.fmu.getDirectionalDerivative(i.named("ball.ay", "ball.vy"), i.named("push"), [1.0, 1.0]),
+            lambda i: i.fmu.fmi3GetOutputDerivatives(
+                i.fmu.component, (ctypes.c_uint32 * 1)(*i.named("ball.y")), 1, (ctypes.c_int32 * 1)(1),
+                (ctypes.c_double * 2)(), 2,
+            ),
+        ):  # fmt: skip
+            with pytest.raises(FMICallException):
+                call(instance)
+        instance.set(instance.named("push"), [1.0])
+    for instance in (*both.instances, *plain):
+        instance.fmu.doStep(0.001, 0.05)
+        found.append(list(instance.get(instance.named("ball.y", "ball.vy"))))
+    assert found == [found[0]] * 4
 
 
 def test_functions_that_the_fmu_has_not(tmp_path):
