@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT := out/demo
 # what an installation depends on: the FMU shim is compiled by it
-SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/shim/*)
+SOURCES := pyproject.toml $(wildcard setup.py fmu_wrapper/fmi/* fmu_wrapper/shim/*)
 
 # by uv, which takes a fifth of pip's time; by pip on platforms that uv has no wheel for
 install = $(BIN)/pip install --disable-pip-version-check --quiet --only-binary :all: uv 2>/dev/null; \

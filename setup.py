@@ -1,5 +1,5 @@
-"""Builds the FMU shim (fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of the core where it is
-asked for; everything else stands in pyproject.toml.
+"""Builds the FMU shim (fmu_wrapper/fmi/*.c, fmu_wrapper/shim/*.c) with a C compiler, and the library of machine code of
+the core where it is asked for; everything else stands in pyproject.toml.
 
 An installation from the sources unpacks the library that the repository has for this machine, if it is of these very
 sources (`core/aot/packed.py`).
@@ -25,10 +25,10 @@ from setuptools import Extension, setup
 from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 
-SHIM = Path("fmu_wrapper", "shim")
+SHIM = (Path("fmu_wrapper", "fmi"), Path("fmu_wrapper", "shim"))
 COMPILED = "core/compiled"
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-FLAGS = ["-std=c11", "-O2", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra"]
+FLAGS = ["-std=c11", "-O2", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra", "-DTLISMNI_SHIM"]
 SYSTEM_FLAGS = {"win32": [], "darwin": ["-fPIC"]}.get(sys.platform, ["-fPIC", "-ldl", "-lpthread"])
 
 
@@ -148,8 +148,8 @@ setup(
     ext_modules=[
         Extension(
             "tlismni.fmu_wrapper.tlismni_shim",
-            sources=sorted(path.as_posix() for path in SHIM.glob("*.c")),
-            depends=sorted(path.as_posix() for path in SHIM.glob("*.h")),
+            sources=[path.as_posix() for folder in SHIM for path in sorted(folder.glob("*.c"))],
+            depends=[path.as_posix() for folder in SHIM for path in sorted(folder.glob("*.h"))],
         )
     ],
     cmdclass={"build_ext": BuildShim, "bdist_wheel": PlatformWheel},

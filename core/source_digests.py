@@ -26,14 +26,15 @@ def core_digest() -> str:
     return digest.hexdigest()[:32]
 
 
-def c_sources() -> list[Path]:
-    """The C sources that belong in the library: those in a folder `native` of any part of the package."""
-    return sorted(_CORE.parent.glob("*/native/*.c"))
+def c_sources(pattern: str = "*.c") -> list[Path]:
+    """The C sources that belong in the library: those in a folder `native` of any part of the package, and the
+    functions of FMI."""
+    return sorted([*_CORE.parent.glob(f"*/native/{pattern}"), *_CORE.parent.glob(f"fmu_wrapper/fmi/{pattern}")])
 
 
 def c_digest() -> str:
     """Digest of them and of their headers."""
     digest = hashlib.sha256()
-    for path in sorted([*c_sources(), *_CORE.parent.glob("*/native/*.h")]):
-        digest.update(f"{path.parent.parent.name}/{path.name}\0".encode() + path.read_bytes() + b"\0")
+    for path in c_sources("*.[ch]"):
+        digest.update(f"{path.relative_to(_CORE.parent).as_posix()}\0".encode() + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]

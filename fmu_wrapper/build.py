@@ -18,8 +18,13 @@ from .boot import user_cache
 from .errors import ExportError
 from .platforms import PLATFORMS, Platform, choose
 
-SHIM = Path(__file__).parent / "shim"
-FLAGS = ("-std=c11", "-O2", "-s", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra")
+FOLDERS = (Path(__file__).parent / "fmi", Path(__file__).parent / "shim")
+FLAGS = ("-std=c11", "-O2", "-s", "-shared", "-fvisibility=hidden", "-Wall", "-Wextra", "-DTLISMNI_SHIM")
+
+
+def shim_sources(pattern: str = "*.c") -> list[Path]:
+    """The C sources of the binary: the functions of FMI, and what drives Python."""
+    return [path for folder in FOLDERS for path in sorted(folder.glob(pattern))]
 
 
 def binary(name: str) -> Path:
@@ -52,9 +57,10 @@ def binary(name: str) -> Path:
 
 def compile_shim(target: Platform, path: Path) -> None:
     """Compile the shim for `target` into `path`, whole or not at all. Raises ExportError with what went wrong."""
-    sources = sorted(str(source) for source in SHIM.glob("*.c"))
-    if not sources:
-        raise ExportError(f"the C sources of the FMU's binary are missing in '{SHIM}': install tlismni again")
+    if not all(any(folder.glob("*.c")) for folder in FOLDERS):
+        missing = "' or '".join(map(str, FOLDERS))
+        raise ExportError(f"the C sources of the FMU's binary are missing in '{missing}': install tlismni again")
+    sources = map(str, shim_sources())
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         made = Path(folder, path.name)
         compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target.target]
@@ -68,8 +74,8 @@ def compile_shim(target: Platform, path: Path) -> None:
 def _digest() -> str:
     """Of sources and flags."""
     digest = hashlib.sha256(repr((FLAGS, sorted(PLATFORMS.items()))).encode())
-    for path in sorted(SHIM.glob("*.[ch]")):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    for path in shim_sources("*.[ch]"):
+        digest.update(f"{path.parent.name}/{path.name}".encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 

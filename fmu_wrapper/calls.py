@@ -13,6 +13,7 @@ from .errors import FmuError, FmuValueError, SnapshotError, Status
 from .shared_calls import SharedCalls
 from .slave import Slave
 from .snapshot import Snapshot
+from .variables import Kind
 
 Function = Callable[..., Any]
 THE_STATUS = object()
@@ -87,23 +88,26 @@ class Calls(SharedCalls):
             self.kept(handle)
             del self._states[handle]
 
+    def check_room(
+        self, room: npt.NDArray[Any], what: str, kind: Kind, references: npt.NDArray[np.uint32], of: str
+    ) -> None:
+        """Refuse, with FmuValueError, room for another number of values than `references` have variables of `kind`,
+        before the slave is asked, which would tell the simulation its inputs."""
+        count = len(self.slave.variables.plan(kind, references).variables)  # an array has several
+        if len(room) != count:
+            raise FmuValueError(f"room for {len(room)} {what} was given for {count} {of}")
+
     def directional_derivative(self, unknowns: Any, knowns: Any, seed: Any, sensitivity: Any) -> None:
         """The derivatives of `unknowns` along `seed` in `knowns` into the buffer `sensitivity`."""
-        found = self.slave.directional_derivative(
-            references_in(unknowns), references_in(knowns), numbers_in(seed, np.float64)
-        )
-        room = numbers_in(sensitivity, np.float64)
-        if len(room) != len(found):
-            raise FmuValueError(f"room for {len(room)} sensitivities was given for {len(found)} unknowns")
-        room[:] = found
+        outputs, room = references_in(unknowns), numbers_in(sensitivity, np.float64)
+        self.check_room(room, "sensitivities", "real", outputs, "unknowns")
+        room[:] = self.slave.directional_derivative(outputs, references_in(knowns), numbers_in(seed, np.float64))
 
     def output_derivatives(self, references: Any, orders: Any, values: Any) -> None:
         """The time derivatives of outputs into the buffer `values`."""
-        found = self.slave.output_derivatives(references_in(references), numbers_in(orders, np.int32).tolist())
-        room = numbers_in(values, np.float64)
-        if len(room) != len(found):
-            raise FmuValueError(f"room for {len(room)} derivatives was given for {len(found)} outputs")
-        room[:] = found
+        outputs, room = references_in(references), numbers_in(values, np.float64)
+        self.check_room(room, "derivatives", "real", outputs, "outputs")
+        room[:] = self.slave.output_derivatives(outputs, numbers_in(orders, np.int32).tolist())
 
     def write_state(self, handle: int, buffer: Any) -> None:
         """Write the bytes of the snapshot under `handle` into `buffer`. Raises SnapshotError if it is too small."""

@@ -118,10 +118,9 @@ class Fmi3Calls(Calls):
     # values
 
     def _get(self, kind: Kind, vr: Any, value: Any, dtype: Any) -> None:
-        found, room = self.slave.get(kind, references_in(vr)), numbers_in(value, dtype)
-        if len(found) != len(room):
-            raise FmuValueError(f"room for {len(room)} values was given for {len(found)} scalar variables")
-        room[:] = found
+        references, room = references_in(vr), numbers_in(value, dtype)
+        self.check_room(room, "values", kind, references, "scalar variables")
+        room[:] = self.slave.get(kind, references)
 
     def _check_type(self, vr: Any, enumerations: bool) -> None:
         """Refuse Int32 variables among enumerations, and the other way round: their functions differ."""

@@ -136,7 +136,7 @@ def _setting(v: Variable, model: Model, settings: Settings, table: VariableTable
 def variables_file(
     table: VariableTable, token: str, rtol: float, names: Sequence[str], arrays: Sequence[ArrayVariable] = ()
 ) -> bytes:
-    """The list of variables, as `native/files.c` reads it. Raises ExportError for a token that is too long."""
+    """The list of variables, as `native/variable_list.c` reads it. Raises ExportError for a token that is too long."""
     text = token.encode()
     if len(text) >= _TOKEN:
         raise ExportError(f"the token '{token}' is longer than {_TOKEN - 1} characters")

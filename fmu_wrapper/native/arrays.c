@@ -1,23 +1,28 @@
 /* Arrays of FMI 3.0: vectors whose elements are variables of their own. */
 
-#include "slave.h"
+#include "native_slave.h"
 
 #include <stdlib.h>
+
+#include "../fmi/functions.h"
 
 static const ArrayOf *array_of(const Slave *self, uint32_t reference) {
     size_t number = reference - self->count - 1;
     return reference > self->count && number < self->array_count ? self->arrays + number : NULL;
 }
 
-bool slave_elements(const Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
-                    Elements *found) {
+bool native_elements(const Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                     size_t values, Elements *found) {
     *found = (Elements){vr, order, n, NULL, NULL};
     size_t count = 0;
     bool any = false;
-    for (size_t k = 0; slave_alive(self) && vr && k < n; k++) {
+    for (size_t k = 0; k < n; k++) {
         const ArrayOf *array = array_of(self, vr[k]);
         any = any || array;
         count += array ? (size_t)array->count : 1;
+    }
+    if (!is_of_length(self, function, count, values)) {
+        return false;
     }
     if (!any) {
         return true;
@@ -25,8 +30,8 @@ bool slave_elements(const Slave *self, const char *function, const uint32_t vr[]
     found->made = malloc((count + 1) * sizeof *found->made);
     found->orders = order ? malloc((count + 1) * sizeof *found->orders) : NULL;
     if (!found->made || (order && !found->orders)) {
-        slave_elements_end(found);
-        slave_error(self, function, "there is no memory left for the elements of %zu arrays", n);
+        native_elements_end(found);
+        native_error(self, function, "there is no memory left for the elements of %zu arrays", n);
         return false;
     }
     size_t at = 0;
@@ -45,7 +50,7 @@ bool slave_elements(const Slave *self, const char *function, const uint32_t vr[]
     return true;
 }
 
-void slave_elements_end(Elements *found) {
+void native_elements_end(Elements *found) {
     free(found->made);
     free(found->orders);
 }

@@ -1,10 +1,12 @@
 /* Derivatives: of outputs along inputs, and in time. */
 
-#include "slave.h"
+#include "native_slave.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../fmi/functions.h"
 
 #define LOOKABLE (IN(INITIALIZATION) | IN(STEP_MODE) | IN(EVENT_DUE) | IN(EVENT_MODE))
 #define RUNNING (IN(STEP_MODE) | IN(INTERMEDIATE) | IN(EVENT_DUE) | IN(EVENT_MODE) | IN(TERMINATED))
@@ -15,7 +17,7 @@ static double *room_of(Slave *self, const char *function) {
         size_t numbers = tlismni_count(self->model, TLISMNI_CHANNEL) + tlismni_count(self->model, TLISMNI_INPUT);
         self->room = malloc(numbers * sizeof(double) + tlismni_state_size(self->model));
         if (!self->room) {
-            slave_error(self, function, "there is no memory left for derivatives");
+            native_error(self, function, "there is no memory left for derivatives");
         }
     }
     return self->room;
@@ -24,9 +26,9 @@ static double *room_of(Slave *self, const char *function) {
 /* The variable behind a reference if it is a real of one of two sources; NULL with a line in the log. */
 static const Variable *of_source(const Slave *self, const char *function, uint32_t reference, Source one, Source other,
                                  const char *what) {
-    const Variable *v = slave_variable(self, function, reference, REAL);
+    const Variable *v = native_variable(self, function, reference, REAL);
     if (v && v->source != (int32_t)one && v->source != (int32_t)other) {
-        slave_error(self, function, "value reference %lu is no %s: derivatives are those of outputs with respect to inputs",
+        native_error(self, function, "value reference %lu is no %s: derivatives are those of outputs with respect to inputs",
                     (unsigned long)reference, what);
         return NULL;
     }
@@ -37,94 +39,109 @@ static const Variable *of_source(const Slave *self, const char *function, uint32
 static int along(Slave *self, const char *function, double *room) {
     size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL), inputs = tlismni_count(self->model, TLISMNI_INPUT);
     int status = tlismni_derivatives(self->run, room + channels, room, room + channels + inputs);
-    return status ? slave_run_error(self, function, status) : STATUS_OK;
+    return status ? native_run_error(self, function, status) : STATUS_OK;
 }
 
 /* Are these lists of outputs and inputs, and may they be asked about now? */
-static bool may_ask(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],
-                    size_t knowns, const double seed[], size_t seeds, const double result[], size_t results) {
-    if (!slave_may(self, function, LOOKABLE) || !slave_has_room(self, function, unknown, unknowns) ||
-        !slave_has_room(self, function, known, knowns) || !slave_has_room(self, function, seed, seeds) ||
-        !slave_has_room(self, function, result, results)) {
+static bool may_ask(Slave *self, const char *function, const Question *q) {
+    if (!native_may(self, function, LOOKABLE)) {
         return false;
     }
-    for (size_t k = 0; k < unknowns; k++) {
-        if (!of_source(self, function, unknown[k], CHANNEL, EVENT_COUNT, "output")) {
+    for (size_t k = 0; k < q->unknowns; k++) {
+        if (!of_source(self, function, q->unknown[k], CHANNEL, EVENT_COUNT, "output")) {
             return false;
         }
     }
-    for (size_t k = 0; k < knowns; k++) {
-        if (!of_source(self, function, known[k], INPUT, INPUT, "input")) {
+    for (size_t k = 0; k < q->knowns; k++) {
+        if (!of_source(self, function, q->known[k], INPUT, INPUT, "input")) {
             return false;
         }
     }
-    for (size_t k = 0; k < seeds; k++) {
-        if (!isfinite(seed[k])) {
-            slave_error(self, function, "the seed is not finite");
+    for (size_t k = 0; k < q->seeds; k++) {
+        if (!isfinite(q->seed[k])) {
+            native_error(self, function, "the seed is not finite");
             return false;
         }
     }
-    return slave_look_at_all(self, function) == STATUS_OK;
+    return native_look_at_all(self, function) == STATUS_OK;
 }
 
 static int check_finite(const Slave *self, const char *function, double x) {
-    return isfinite(x) ? STATUS_OK : slave_error(self, function, "derivatives are not finite: inputs or seed are too large");
+    return isfinite(x) ? STATUS_OK : native_error(self, function, "derivatives are not finite: inputs or seed are too large");
 }
 
-int slave_directional(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],
-                      size_t knowns, const double seed[], double sensitivity[]) {
-    if (!may_ask(self, function, unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns)) {
-        return STATUS_ERROR;
-    }
+/* One derivative for each of `unknowns`. */
+static int directional(Slave *self, const char *function, const Question *q) {
     size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL), inputs = tlismni_count(self->model, TLISMNI_INPUT);
-    double *room = room_of(self, function);
+    double *room = may_ask(self, function, q) ? room_of(self, function) : NULL;
     if (!room) {
         return STATUS_ERROR;
     }
     memset(room + channels, 0, inputs * sizeof *room);
-    for (size_t k = 0; k < knowns; k++) {
-        room[channels + (size_t)self->variables[known[k] - 1].number] += seed[k];
+    for (size_t k = 0; k < q->knowns; k++) {
+        room[channels + (size_t)self->variables[q->known[k] - 1].number] += q->seed[k];
     }
     int status = along(self, function, room);
-    for (size_t k = 0; k < unknowns && status == STATUS_OK; k++) {
-        sensitivity[k] = room[self->variables[unknown[k] - 1].number];
-        status = check_finite(self, function, sensitivity[k]);
+    for (size_t k = 0; k < q->unknowns && status == STATUS_OK; k++) {
+        q->sensitivity[k] = room[self->variables[q->unknown[k] - 1].number];
+        status = check_finite(self, function, q->sensitivity[k]);
     }
     return status;
 }
 
-int slave_adjoint(Slave *self, const char *function, const uint32_t unknown[], size_t unknowns, const uint32_t known[],
-                  size_t knowns, const double seed[], double sensitivity[]) {
-    if (!may_ask(self, function, unknown, unknowns, known, knowns, seed, unknowns, sensitivity, knowns)) {
-        return STATUS_ERROR;
-    }
+/* One derivative for each of `knowns`. */
+static int adjoint(Slave *self, const char *function, const Question *q) {
     size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL), inputs = tlismni_count(self->model, TLISMNI_INPUT);
-    double *room = room_of(self, function);
+    double *room = may_ask(self, function, q) ? room_of(self, function) : NULL;
     if (!room) {
         return STATUS_ERROR;
     }
-    for (size_t j = 0; j < knowns; j++) {
+    for (size_t j = 0; j < q->knowns; j++) {
         memset(room + channels, 0, inputs * sizeof *room);
-        room[channels + (size_t)self->variables[known[j] - 1].number] = 1.0;
+        room[channels + (size_t)self->variables[q->known[j] - 1].number] = 1.0;
         if (along(self, function, room) != STATUS_OK) {
             return STATUS_ERROR;
         }
         double sum = 0.0;
-        for (size_t k = 0; k < unknowns; k++) {
-            sum += seed[k] * room[self->variables[unknown[k] - 1].number];
+        for (size_t k = 0; k < q->unknowns; k++) {
+            sum += q->seed[k] * room[self->variables[q->unknown[k] - 1].number];
         }
         if (check_finite(self, function, sum) != STATUS_OK) {
             return STATUS_ERROR;
         }
-        sensitivity[j] = sum;
+        q->sensitivity[j] = sum;
     }
     return STATUS_OK;
 }
 
-int slave_output_derivatives(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
-                             double value[]) {
-    if (!slave_may(self, function, RUNNING) || !slave_has_room(self, function, vr, n) ||
-        !slave_has_room(self, function, order, n) || !slave_has_room(self, function, value, n)) {
+/* The same with the elements of arrays as unknowns, of which seed or sensitivities has as many. */
+static int with_elements(Slave *self, const char *function, const Question *given, bool back) {
+    Question q = *given;
+    Elements e;
+    int status = STATUS_ERROR;
+    if (!is_of_length(self, function, q.knowns, back ? q.sensitivities : q.seeds)) {
+        return status;
+    }
+    if (native_elements(self, function, q.unknown, q.unknowns, NULL, back ? q.seeds : q.sensitivities, &e)) {
+        q.unknown = e.vr;
+        q.unknowns = e.n;
+        status = (back ? adjoint : directional)(self, function, &q);
+    }
+    native_elements_end(&e);
+    return status;
+}
+
+int slave_directional(Slave *self, const char *function, const Question *question) {
+    return with_elements(self, function, question, false);
+}
+
+int slave_adjoint(Slave *self, const char *function, const Question *question) {
+    return with_elements(self, function, question, true);
+}
+
+static int output_derivatives(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                              double value[]) {
+    if (!native_may(self, function, RUNNING)) {
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
@@ -132,28 +149,37 @@ int slave_output_derivatives(Slave *self, const char *function, const uint32_t v
             return STATUS_ERROR;
         }
         if (order[k] != 1) {
-            return slave_error(self, function, "a derivative of order %ld was asked: there are those of order 1 "
+            return native_error(self, function, "a derivative of order %ld was asked: there are those of order 1 "
                                "(maxOutputDerivativeOrder)", (long)order[k]);
         }
     }
     double *room = room_of(self, function);
-    if (!room || slave_look_at_all(self, function) != STATUS_OK) {
+    if (!room || native_look_at_all(self, function) != STATUS_OK) {
         return STATUS_ERROR;
     }
     size_t channels = tlismni_count(self->model, TLISMNI_CHANNEL), inputs = tlismni_count(self->model, TLISMNI_INPUT);
     int status = tlismni_rates(self->run, room, room + channels + inputs);
     if (status) {
-        return slave_run_error(self, function, status);
+        return native_run_error(self, function, status);
     }
     for (size_t k = 0; k < n; k++) {
         size_t number = (size_t)self->variables[vr[k] - 1].number;
         if (!isfinite(room[number])) {
             const char *name = tlismni_name(self->model, TLISMNI_CHANNEL, number);
-            return slave_error(self, function, "the time derivative of '%s' is not known exactly: there are "
+            return native_error(self, function, "the time derivative of '%s' is not known exactly: there are "
                       "those of positions, velocities, gaps, gap rates, impulses, work and dissipation; take the difference "
                       "of two steps", name ? name : "?");
         }
         value[k] = room[number];
     }
     return STATUS_OK;
+}
+
+int slave_output_derivatives(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
+                             double value[], size_t values) {
+    Elements e;
+    bool found = native_elements(self, function, vr, n, order, values, &e);
+    int status = found ? output_derivatives(self, function, e.vr, e.n, e.order, value) : STATUS_ERROR;
+    native_elements_end(&e);
+    return status;
 }

@@ -1,6 +1,6 @@
 /* Stored states: copies of memory, and bytes for other instances and processes. */
 
-#include "slave.h"
+#include "native_slave.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,15 +31,15 @@ static Stored *kept(const Slave *self, const char *function, const void *state) 
             return s;
         }
     }
-    slave_error(self, function, "the FMU state %p is unknown to instance '%.60s': it was freed, or belongs to another "
-                "instance (serialise it to carry it over)", state, self->name);
+    native_error(self, function, "the FMU state %p is unknown to instance '%.60s': it was freed, or belongs to another "
+                "instance (serialise it to carry it over)", state, self->host.name);
     return NULL;
 }
 
 static Stored *new_state(Slave *self, const char *function, size_t room) {
     Stored *s = malloc(sizeof *s + room);
     if (!s) {
-        slave_error(self, function, "there is no memory left for a state");
+        native_error(self, function, "there is no memory left for a state");
         return NULL;
     }
     s->next = self->stored;
@@ -55,7 +55,8 @@ static Stored *room_for(Slave *self, const char *function, void **state, size_t 
             if (s->room >= room) {
                 return s;
             }
-            slave_free_state(self, function, state);
+            *state = NULL;
+            slave_free_state(self, function, s);
             break;
         }
     }
@@ -63,7 +64,7 @@ static Stored *room_for(Slave *self, const char *function, void **state, size_t 
 }
 
 int slave_get_state(Slave *self, const char *function, void **state) {
-    if (!slave_may(self, function, ~(IN(FAILED) | IN(INTERMEDIATE))) || !slave_has_room(self, function, state, 1)) {
+    if (!native_may(self, function, ~(IN(FAILED) | IN(INTERMEDIATE)))) {
         return STATUS_ERROR;
     }
     Stored *s = room_for(self, function, state, tlismni_saved_size(self->run));
@@ -78,35 +79,28 @@ int slave_get_state(Slave *self, const char *function, void **state) {
 }
 
 int slave_set_state(Slave *self, const char *function, void *state) {
-    Stored *s = slave_may(self, function, ~IN(INTERMEDIATE)) ? kept(self, function, state) : NULL;
+    Stored *s = native_may(self, function, ~IN(INTERMEDIATE)) ? kept(self, function, state) : NULL;
     if (!s) {
         return STATUS_ERROR;
     }
     if ((s->phase == EVENT_MODE || s->phase == EVENT_DUE) && !self->event_mode) {
-        return slave_error(self, function, "the state was stored in event mode, and this instance has none: instantiate it "
+        return native_error(self, function, "the state was stored in event mode, and this instance has none: instantiate it "
                            "with eventModeUsed = true");
     }
     self->phase = s->phase;
     self->stop = s->stop;
     self->fresh = false;
     int status = tlismni_restore(self->run, s->saved);
-    slave_take_parameters(self);
+    native_take_parameters(self);
     if (status) {
         self->phase = FAILED;
-        return slave_run_error(self, function, status);
+        return native_run_error(self, function, status);
     }
     return STATUS_OK;
 }
 
-int slave_free_state(Slave *self, const char *function, void **state) {
-    if (!slave_alive(self)) {
-        return STATUS_ERROR;
-    }
-    if (!state || !*state) {
-        return STATUS_OK;
-    }
-    Stored *s = kept(self, function, *state);
-    *state = NULL;
+int slave_free_state(Slave *self, const char *function, void *state) {
+    Stored *s = kept(self, function, state);
     if (!s) {
         return STATUS_ERROR;
     }
@@ -119,7 +113,7 @@ int slave_free_state(Slave *self, const char *function, void **state) {
     return STATUS_OK;
 }
 
-void slave_forget_states(Slave *self) {
+void native_forget_states(Slave *self) {
     while (self->stored) {
         Stored *next = self->stored->next;
         free(self->stored);
@@ -128,9 +122,6 @@ void slave_forget_states(Slave *self) {
 }
 
 int slave_state_size(Slave *self, const char *function, void *state, size_t *size) {
-    if (!slave_alive(self) || !slave_has_room(self, function, size, 1)) {
-        return STATUS_ERROR;
-    }
     Stored *s = kept(self, function, state);
     if (!s) {
         return STATUS_ERROR;
@@ -140,34 +131,31 @@ int slave_state_size(Slave *self, const char *function, void *state, size_t *siz
 }
 
 int slave_write_state(Slave *self, const char *function, void *state, void *bytes, size_t size) {
-    Stored *s = slave_alive(self) && slave_has_room(self, function, bytes, size) ? kept(self, function, state) : NULL;
+    Stored *s = kept(self, function, state);
     if (!s) {
         return STATUS_ERROR;
     }
     size_t needed = sizeof(StateHead) + tlismni_packed_size(s->saved);
     if (size < needed) {
-        return slave_error(self, function, "the buffer holds %zu bytes, the stored state needs %zu", size, needed);
+        return native_error(self, function, "the buffer holds %zu bytes, the stored state needs %zu", size, needed);
     }
     StateHead head = {{0}, s->phase, isfinite(s->stop), isfinite(s->stop) ? s->stop : 0.0, 0};
     memcpy(head.magic, STATE_MAGIC, sizeof head.magic);
     head.check = check_of(&head);
     memcpy(bytes, &head, sizeof head);
     int status = tlismni_pack(self->run, s->saved, (char *)bytes + sizeof head);
-    return status ? slave_run_error(self, function, status) : STATUS_OK;
+    return status ? native_run_error(self, function, status) : STATUS_OK;
 }
 
 int slave_read_state(Slave *self, const char *function, const void *bytes, size_t size, void **state) {
     StateHead head;
-    if (!slave_alive(self) || !slave_has_room(self, function, bytes, 1) || !slave_has_room(self, function, state, 1)) {
-        return STATUS_ERROR;
-    }
     if (size < sizeof head) {
-        return slave_error(self, function, "%zu bytes are no stored state of this FMU, which takes more", size);
+        return native_error(self, function, "%zu bytes are no stored state of this FMU, which takes more", size);
     }
     memcpy(&head, bytes, sizeof head);
     if (memcmp(head.magic, STATE_MAGIC, sizeof head.magic) != 0 || head.check != check_of(&head) || head.phase < 0 ||
         head.phase > TERMINATED || head.phase == FAILED || head.phase == INTERMEDIATE) {
-        return slave_error(self, function, "the bytes are no stored state of this FMU, or damaged: store it again");
+        return native_error(self, function, "the bytes are no stored state of this FMU, or damaged: store it again");
     }
     Stored *s = new_state(self, function, tlismni_state_size(self->model));
     if (!s) {
@@ -176,15 +164,14 @@ int slave_read_state(Slave *self, const char *function, const void *bytes, size_
     s->phase = (Phase)head.phase;
     s->stop = head.stops ? head.stop : INFINITY;
     int status = tlismni_unpack(self->run, (const char *)bytes + sizeof head, size - sizeof head, s->saved);
-    void *made = s;
     if (status) {
-        slave_free_state(self, function, &made);
-        return slave_run_error(self, function, status);
+        slave_free_state(self, function, s);
+        return native_run_error(self, function, status);
     }
     if (*state && *state != s) { /* what it was before is no longer asked for */
         for (Stored *old = self->stored; old; old = old->next) {
             if (old == *state) {
-                slave_free_state(self, function, state);
+                slave_free_state(self, function, old);
                 break;
             }
         }

@@ -1,6 +1,6 @@
 /* Steps and events: what `Slave.do_step` and `Run.advance` do in Python. */
 
-#include "slave.h"
+#include "native_slave.h"
 
 #include <math.h>
 
@@ -16,22 +16,22 @@ static bool check_step(const Slave *self, const char *function, double t, double
     double own = tlismni_time(self->run);
     *end = t + h;
     if (!isfinite(t) || !isfinite(h) || h <= 0.0) {
-        slave_error(self, function, "communication point %g s and step %g s must be finite, the step greater than 0", t, h);
+        native_error(self, function, "communication point %g s and step %g s must be finite, the step greater than 0", t, h);
         return false;
     }
     double scale = fmax(fmax(fabs(own), fabs(t)), h);
     double slack = fmax(8.0 * ulp(scale), fmin(LARGEST_SLIP * scale, 0.01 * h));
     if (fabs(t - own) > slack) {
-        slave_error(self, function, "the communication point is %.17g s, but this slave is at %.17g s: step from there, or "
+        native_error(self, function, "the communication point is %.17g s, but this slave is at %.17g s: step from there, or "
                     "set a stored state first", t, own);
         return false;
     }
     if (!(*end > own) || !isfinite(*end)) {
-        slave_error(self, function, "the communication step %g s is lost in rounding at %.17g s: make it larger", h, own);
+        native_error(self, function, "the communication step %g s is lost in rounding at %.17g s: make it larger", h, own);
         return false;
     }
     if (*end > self->stop + slack) {
-        slave_error(self, function, "the step from %.17g s by %g s ends after the stop time %.17g s of the experiment: make "
+        native_error(self, function, "the step from %.17g s by %g s ends after the stop time %.17g s of the experiment: make "
                     "it shorter, or set up the experiment without a stop time", t, h, self->stop);
         return false;
     }
@@ -45,14 +45,14 @@ static int advance(Slave *self, double t, double goal, StepEnd *end) {
     while ((status = tlismni_step_to_event(self->run, t, &event)) == TLISMNI_OK && event) {
         double reached = tlismni_time(self->run);
         bool early = self->early_return && reached < goal;
-        slave_log_events(self);
+        native_log_events(self);
         if (self->event_mode && (early || reached >= goal)) {
             *end = (StepEnd){reached, true, early};
             return status;
         }
         do {
             status = tlismni_happen(self->run, &again);
-            slave_log_events(self);
+            native_log_events(self);
         } while (status == TLISMNI_OK && again);
         if (status != TLISMNI_OK) {
             return status;
@@ -62,7 +62,7 @@ static int advance(Slave *self, double t, double goal, StepEnd *end) {
             return status;
         }
     }
-    slave_log_events(self);
+    native_log_events(self);
     return status;
 }
 
@@ -81,7 +81,7 @@ static int advance_with_updates(Slave *self, double target, StepEnd *end) {
         }
         self->phase = INTERMEDIATE;
         self->fresh = false;
-        bool ends = self->update(self, end->time, self->early_return, &wanted);
+        bool ends = self->host.update(&self->host, end->time, self->early_return, &wanted);
         if (self->phase != INTERMEDIATE) { /* there are no outputs with the inputs that the host has set */
             return tlismni_look(self->run);
         }
@@ -98,28 +98,25 @@ static int advance_with_updates(Slave *self, double target, StepEnd *end) {
 
 int slave_step(Slave *self, const char *function, double t, double h, StepEnd *end) {
     double goal;
-    if (!slave_may(self, function, IN(STEP_MODE))) {
-        return STATUS_ERROR;
-    }
     *end = (StepEnd){tlismni_time(self->run), false, false};
-    if (!check_step(self, function, t, h, &goal)) {
+    if (!native_may(self, function, IN(STEP_MODE)) || !check_step(self, function, t, h, &goal)) {
         return STATUS_ERROR;
     }
-    bool read = self->asked, plain = !(self->event_mode || self->early_return || self->update);
-    slave_want_what_was_asked(self);
+    bool read = self->asked, plain = !(self->event_mode || self->early_return || self->host.update);
+    native_want_what_was_asked(self);
     self->asked = self->fresh = false;
     *end = (StepEnd){goal, false, false};
     int status = plain          ? tlismni_step(self->run, goal, read)
-                 : self->update ? advance_with_updates(self, goal, end)
+                 : self->host.update ? advance_with_updates(self, goal, end)
                                 : advance(self, goal, goal, end);
     if (status) {
         self->phase = FAILED;
         end->time = tlismni_time(self->run);
-        return slave_run_error(self, function, status);
+        return native_run_error(self, function, status);
     }
     self->fresh = plain && read; /* what an intermediate update has looked at is of a time before */
     if (plain) {
-        slave_log_events(self);
+        native_log_events(self);
     } else if (end->event_due) {
         self->phase = EVENT_DUE;
     }
@@ -127,10 +124,10 @@ int slave_step(Slave *self, const char *function, double t, double h, StepEnd *e
 }
 
 int slave_enter_event_mode(Slave *self, const char *function) {
-    if (slave_alive(self) && !self->event_mode) {
-        return slave_error(self, function, "this instance has no event mode: instantiate it with eventModeUsed = true");
+    if (!self->event_mode) {
+        return native_error(self, function, "this instance has no event mode: instantiate it with eventModeUsed = true");
     }
-    if (!slave_may(self, function, IN(STEP_MODE) | IN(EVENT_DUE))) {
+    if (!native_may(self, function, IN(STEP_MODE) | IN(EVENT_DUE))) {
         return STATUS_ERROR;
     }
     self->phase = EVENT_MODE;
@@ -139,23 +136,29 @@ int slave_enter_event_mode(Slave *self, const char *function) {
 
 int slave_update(Slave *self, const char *function, bool *again) {
     *again = false;
-    if (!slave_may(self, function, IN(EVENT_MODE))) {
+    if (!native_may(self, function, IN(EVENT_MODE))) {
         return STATUS_ERROR;
     }
     self->fresh = false;
     int status = tlismni_happen(self->run, again);
     if (status) {
         self->phase = FAILED;
-        return slave_run_error(self, function, status);
+        return native_run_error(self, function, status);
     }
-    slave_log_events(self);
+    native_log_events(self);
     return STATUS_OK;
 }
 
 int slave_enter_step_mode(Slave *self, const char *function) {
-    if (!slave_may(self, function, IN(EVENT_MODE))) {
+    if (!native_may(self, function, IN(EVENT_MODE))) {
         return STATUS_ERROR;
     }
     self->phase = STEP_MODE;
+    return STATUS_OK;
+}
+
+int slave_time(Slave *self, const char *function, double *time) {
+    (void)function;
+    *time = tlismni_time(self->run);
     return STATUS_OK;
 }

@@ -1,23 +1,21 @@
-/* Values of variables. */
+/* Values of variables are read. */
 
-#include "slave.h"
+#include "native_slave.h"
 
 #include <math.h>
-#include <string.h>
 
 static const char *const KIND_NAMES[] = {"real", "integer", "boolean"};
 #define READABLE (~IN(INSTANTIATED))
-#define SETTABLE (IN(INSTANTIATED) | IN(INITIALIZATION) | IN(STEP_MODE) | IN(INTERMEDIATE) | IN(EVENT_DUE) | IN(EVENT_MODE))
 
-const Variable *slave_variable(const Slave *self, const char *function, uint32_t reference, Kind kind) {
+const Variable *native_variable(const Slave *self, const char *function, uint32_t reference, Kind kind) {
     if (reference < 1 || reference > self->count) {
-        slave_error(self, function, "value reference %lu is unknown: this FMU has 1 to %zu, which stand in "
+        native_error(self, function, "value reference %lu is unknown: this FMU has 1 to %zu, which stand in "
                     "modelDescription.xml", (unsigned long)reference, self->count);
         return NULL;
     }
     const Variable *v = &self->variables[reference - 1];
     if (v->kind != (int32_t)kind) {
-        slave_error(self, function, "value reference %lu is of kind %s, not %s: use the functions for that",
+        native_error(self, function, "value reference %lu is of kind %s, not %s: use the functions for that",
                     (unsigned long)reference, v->enumeration ? "enumeration" : KIND_NAMES[v->kind], KIND_NAMES[kind]);
         return NULL;
     }
@@ -30,7 +28,7 @@ static int look(Slave *self, const char *function) {
     if (self->fresh) {
         return STATUS_OK;
     }
-    if (!slave_may(self, function, ~IN(FAILED))) {
+    if (!native_may(self, function, ~IN(FAILED))) {
         return STATUS_ERROR;
     }
     int status = tlismni_look(self->run);
@@ -38,13 +36,13 @@ static int look(Slave *self, const char *function) {
         if (self->phase != INITIALIZATION) {
             self->phase = FAILED;
         }
-        return slave_run_error(self, function, status);
+        return native_run_error(self, function, status);
     }
     self->fresh = true;
     return STATUS_OK;
 }
 
-int slave_look_at_all(Slave *self, const char *function) {
+int native_look_at_all(Slave *self, const char *function) {
     self->fresh = !tlismni_want(self->run, TLISMNI_ALL) && self->fresh;
     return look(self, function);
 }
@@ -62,7 +60,7 @@ static void want(Slave *self, const Variable *v) {
     self->fresh = !tlismni_want(self->run, number) && self->fresh;
 }
 
-void slave_want_what_was_asked(Slave *self) {
+void native_want_what_was_asked(Slave *self) {
     tlismni_want_none(self->run);
     for (size_t k = 0; k < self->wants; k++) {
         tlismni_want(self->run, self->wanted[k]);
@@ -88,13 +86,12 @@ static double value_of(const Slave *self, const Variable *v) {
     }
 }
 
-int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, double value[]) {
-    if (!slave_may(self, function, READABLE) || !slave_has_room(self, function, vr, n) ||
-        !slave_has_room(self, function, value, n)) {
+static int get_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, double value[]) {
+    if (!native_may(self, function, READABLE)) {
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) { /* all of them at once */
-        const Variable *v = slave_variable(self, function, vr[k], REAL);
+        const Variable *v = native_variable(self, function, vr[k], REAL);
         if (!v) {
             return STATUS_ERROR;
         }
@@ -110,17 +107,35 @@ int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size
     return STATUS_OK;
 }
 
-int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerations, const uint32_t vr[], size_t n,
-                     int64_t value[]) {
-    if (!slave_may(self, function, READABLE) || !slave_has_room(self, function, vr, n) ||
-        !slave_has_room(self, function, value, n)) {
+int slave_get_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, double value[], size_t values) {
+    Elements e;
+    bool found = native_elements(self, function, vr, n, NULL, values, &e);
+    int status = found ? get_reals(self, function, e.vr, e.n, value) : STATUS_ERROR;
+    native_elements_end(&e);
+    return status;
+}
+
+/* Write a value of a type, the k-th of an array. */
+static void put(void *values, size_t k, const Type *type, double number) {
+    if (type->size == sizeof(bool)) {
+        ((bool *)values)[k] = number != 0.0;
+    } else if (type->size == sizeof(int64_t)) {
+        ((int64_t *)values)[k] = (int64_t)rint(number);
+    } else {
+        ((int32_t *)values)[k] = type->kind == BOOLEAN ? number != 0.0 : (int32_t)rint(number);
+    }
+}
+
+int slave_get(Slave *self, const char *function, const Type *type, const uint32_t vr[], size_t n, void *value) {
+    if (!native_may(self, function, READABLE)) {
         return STATUS_ERROR;
     }
     for (size_t k = 0; k < n; k++) {
-        const Variable *v = slave_variable(self, function, vr[k], kind);
-        if (v && enumerations >= 0 && v->enumeration != enumerations) {
-            return slave_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
-                               enumerations ? "an Int32, no enumeration" : "an enumeration", enumerations ? "Int32" : "Int64");
+        const Variable *v = native_variable(self, function, vr[k], type->kind);
+        if (v && type->enumerations >= 0 && v->enumeration != type->enumerations) {
+            return native_error(self, function, "value reference %lu is %s: use the functions for %s", (unsigned long)vr[k],
+                                v->enumeration ? "an enumeration" : "an Int32, no enumeration",
+                                v->enumeration ? "Int64" : "Int32");
         }
         if (v) {
             want(self, v);
@@ -128,166 +143,15 @@ int slave_get_wholes(Slave *self, const char *function, Kind kind, int enumerati
         if (!v || (v->source >= CHANNEL && look(self, function) != STATUS_OK)) {
             return STATUS_ERROR;
         }
-        double number = value_of(self, v);
-        value[k] = kind == BOOLEAN ? number != 0.0 : (int64_t)rint(number);
+        put(value, k, type, value_of(self, v));
     }
     return STATUS_OK;
 }
 
-static int refuse(const Slave *self, const char *function, uint32_t reference) {
-    return slave_error(self, function, "value reference %lu cannot be set: it is neither an input nor a parameter that an "
-                       "FMU without Python can change; export it with another value, or with Python",
-                       (unsigned long)reference);
-}
-
-static bool among(const uint32_t references[], size_t count, uint32_t one) {
-    for (size_t k = 0; k < count; k++) {
-        if (references[k] == one) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Whether a value may be set now; false with a line in the log. */
-static bool may_set(const Slave *self, const char *function, const Variable *v, uint32_t reference, double value) {
-    if (v->source != INPUT && v->source != PARAMETER) {
-        refuse(self, function, reference);
-        return false;
-    }
-    if (v->source == PARAMETER && self->phase != INSTANTIATED && self->phase != INITIALIZATION) {
-        slave_error(self, function, "value reference %lu is a parameter, which is fixed after initialization: reset, then "
-                    "set it before", (unsigned long)reference);
-        return false;
-    }
-    if (self->phase == INTERMEDIATE && !among(self->intermediate, self->intermediates, reference)) {
-        slave_error(self, function, "in an intermediate update only the required intermediate variables can be set, not value "
-                    "reference %lu: name it when the instance is made", (unsigned long)reference);
-        return false;
-    }
-    if (!isfinite(value) || value < v->least || value > v->largest) {
-        const char *name = tlismni_name(self->model, v->source == INPUT ? TLISMNI_INPUT : TLISMNI_PARAMETER,
-                                        (size_t)v->number);
-        slave_error(self, function, "'%s' was set to %g, which is not finite or outside its range [%g, %g]: check what "
-                    "feeds it", name ? name : "?", value, v->least, v->largest);
-        return false;
-    }
-    return true;
-}
-
-void slave_take_parameters(Slave *self) {
-    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER);
-    for (size_t k = 0; k < count; k++) {
-        self->parameters[k] = tlismni_parameter(self->run, k);
-    }
-    self->start = tlismni_start_time(self->run);
-}
-
-/* The run from its start with parameters and start time as they are now, and the inputs as they were. */
-static int start_anew(Slave *self, const char *function) {
-    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER), inputs = tlismni_count(self->model, TLISMNI_INPUT);
-    double *kept = self->parameters + 2 * count, *rates = kept + inputs, since;
-    memcpy(kept, tlismni_inputs(self->run), inputs * sizeof *kept);
-    for (size_t k = 0; k < inputs; k++) {
-        tlismni_rates_of(self->run, k, rates + 2 * k, rates + 2 * k + 1, &since);
-    }
-    tlismni_restart(self->run);
-    memcpy(tlismni_inputs(self->run), kept, inputs * sizeof *kept);
-    int at = self->start == tlismni_time(self->run) ? TLISMNI_OK : tlismni_start_at(self->run, self->start);
-    if (at) {
-        return slave_run_error(self, function, at);
-    }
-    for (size_t k = 0; k < count; k++) {
-        int status = tlismni_set_parameter(self->run, k, self->parameters[k]);
-        if (status) {
-            return slave_not_set(self, function, k, status);
-        }
-    }
-    for (size_t k = 0; k < inputs; k++) { /* which all count as of now: nothing has moved yet */
-        if (rates[2 * k] != 0.0 || rates[2 * k + 1] != 0.0) {
-            tlismni_set_rates(self->run, k, rates[2 * k], rates[2 * k + 1]);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* The same; if these parameters cannot be together, with those before (which stand behind them). */
-static int start_or_go_back(Slave *self, const char *function) {
-    size_t count = tlismni_count(self->model, TLISMNI_PARAMETER);
-    int status = start_anew(self, function);
-    if (status != STATUS_OK) {
-        memcpy(self->parameters, self->parameters + count, count * sizeof *self->parameters);
-        start_anew(self, function);
-    }
-    return status;
-}
-
-int slave_set_reals(Slave *self, const char *function, const uint32_t vr[], size_t n, const double value[]) {
-    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n) ||
-        !slave_has_room(self, function, value, n)) {
+int slave_get_strings(Slave *self, const char *function, const uint32_t vr[], size_t n, const char *value[]) {
+    (void)vr, (void)value;
+    if (!native_may(self, function, READABLE)) {
         return STATUS_ERROR;
     }
-    for (size_t k = 0; k < n; k++) { /* all of them or none */
-        const Variable *v = slave_variable(self, function, vr[k], REAL);
-        if (!v || !may_set(self, function, v, vr[k], value[k])) {
-            return STATUS_ERROR;
-        }
-    }
-    double *inputs = tlismni_inputs(self->run), now = tlismni_time(self->run), first, second, since;
-    bool changed = false;
-    memcpy(self->parameters + tlismni_count(self->model, TLISMNI_PARAMETER), self->parameters,
-           tlismni_count(self->model, TLISMNI_PARAMETER) * sizeof *self->parameters);
-    for (size_t k = 0; k < n; k++) {
-        const Variable *v = &self->variables[vr[k] - 1];
-        changed = changed || v->source == PARAMETER;
-        (v->source == INPUT ? inputs : self->parameters)[v->number] = value[k];
-        if (v->source == INPUT) { /* derivatives end, unless they are of this time */
-            tlismni_rates_of(self->run, (size_t)v->number, &first, &second, &since);
-            if (since != now && (first != 0.0 || second != 0.0)) {
-                tlismni_set_rates(self->run, (size_t)v->number, 0.0, 0.0);
-            }
-        }
-    }
-    self->fresh = self->fresh && !n;
-    return changed ? start_or_go_back(self, function) : STATUS_OK;
-}
-
-int slave_set_rates(Slave *self, const char *function, const uint32_t vr[], size_t n, const int32_t order[],
-                    const double value[]) {
-    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n) ||
-        !slave_has_room(self, function, order, n) || !slave_has_room(self, function, value, n)) {
-        return STATUS_ERROR;
-    }
-    for (size_t k = 0; k < n; k++) { /* all of them or none */
-        const Variable *v = slave_variable(self, function, vr[k], REAL);
-        if (!v) {
-            return STATUS_ERROR;
-        }
-        if (v->source != INPUT || order[k] < 1 || order[k] > 2 || !isfinite(value[k])) {
-            return slave_error(self, function, "a derivative %g of order %ld of value reference %lu was given: only inputs take "
-                               "derivatives, finite ones of orders 1 and 2", value[k], (long)order[k], (unsigned long)vr[k]);
-        }
-        if (!may_set(self, function, v, vr[k], v->start)) {
-            return STATUS_ERROR;
-        }
-    }
-    double now = tlismni_time(self->run), first, second, since;
-    for (size_t k = 0; k < n; k++) {
-        size_t number = (size_t)self->variables[vr[k] - 1].number;
-        tlismni_rates_of(self->run, number, &first, &second, &since);
-        if (since != now) { /* other orders end */
-            first = second = 0.0;
-        }
-        *(order[k] == 1 ? &first : &second) = value[k];
-        tlismni_set_rates(self->run, number, first, second);
-    }
-    self->fresh = self->fresh && !n;
-    return STATUS_OK;
-}
-
-int slave_set_others(Slave *self, const char *function, const uint32_t vr[], size_t n) {
-    if (!slave_may(self, function, SETTABLE) || !slave_has_room(self, function, vr, n)) {
-        return STATUS_ERROR;
-    }
-    return n ? refuse(self, function, vr[0]) : STATUS_OK;
+    return n ? native_error(self, function, "this FMU has no strings") : STATUS_OK;
 }

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../fmi/files.h"
+
 #define ADVICE                                                                                                  \
     "set the environment variable TLISMNI_PYTHON to the python executable of an environment that has tlismni's " \
     "packages (that of a venv will do)"
@@ -34,7 +36,7 @@ static void recorded_at_export(const char *resources, Record *record) {
     char path[PATH_SIZE + 32], text[3 * PATH_SIZE];
     size_t size = 0;
     snprintf(path, sizeof path, "%s/libpython.txt", resources);
-    FILE *file = platform_open(path);
+    FILE *file = files_open(path);
     if (file) {
         size = fread(text, 1, sizeof text - 1, file);
         fclose(file);
@@ -44,7 +46,7 @@ static void recorded_at_export(const char *resources, Record *record) {
 }
 
 static bool can_read(const char *path) {
-    FILE *file = platform_open(path);
+    FILE *file = files_open(path);
     if (file) {
         fclose(file);
     }

@@ -95,13 +95,6 @@ void platform_pin(void) {
                        (LPCWSTR)(void *)&platform_pin, &self);
 }
 
-FILE *platform_open(const char *path) {
-    wchar_t *name = wide(path);
-    FILE *file = name ? _wfopen(name, L"rb") : NULL;
-    free(name);
-    return file;
-}
-
 void platform_setenv(const char *name, const char *value) {
     _putenv_s(name, value ? value : "");
 }
@@ -218,10 +211,6 @@ void platform_pin(void) {
     if (dladdr(&here, &info) && info.dli_fname) {
         dlopen(info.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
     }
-}
-
-FILE *platform_open(const char *path) {
-    return fopen(path, "rb");
 }
 
 void platform_setenv(const char *name, const char *value) {

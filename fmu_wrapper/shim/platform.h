@@ -6,14 +6,6 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#define PRINTF_LIKE(text, first)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
-#endif
-
 /* The library with this file name or path, made visible to libraries loaded later and never unloaded; or NULL. */
 void *platform_load(const char *path);
 
@@ -35,9 +27,6 @@ const char *platform_load_error(void);
 
 /* Keep this library in the process for good: Python holds pointers into it. */
 void platform_pin(void);
-
-/* Open a file for reading; the path is UTF-8. */
-FILE *platform_open(const char *path);
 
 /* Set an environment variable, or unset it with NULL. */
 void platform_setenv(const char *name, const char *value);

@@ -12,7 +12,7 @@ from tlismni.core.source_digests import c_sources
 
 lief = pytest.importorskip("lief")
 NATIVE = Path(__file__).parents[2] / "core" / "native"
-FMI = Path(__file__).parents[2] / "fmu_wrapper" / "native"
+FMI = Path(__file__).parents[2] / "fmu_wrapper" / "fmi"
 OF_C = frozenset(
     "calloc fclose fopen fread free fseek ftell malloc memchr memcpy memmove memset strcmp strcspn strlen strncmp "
     "snprintf vsnprintf rint fmin fmax".split()

@@ -1,5 +1,5 @@
 """A host that gives NULL for one argument of a call, or a length beyond all memory: Error with a line, in each function
-of both standards, and the instance lives on. In a process of its own, which a crash would end."""
+of both standards and both kinds of FMU, and the instance lives on. In a process of its own, which a crash would end."""
 
 import ctypes
 import json
@@ -12,6 +12,7 @@ import pytest
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from fmu_helpers import ball_model
+from tlismni.core.compiled.library import LIBRARY
 from tlismni.fmu_wrapper import export_fmu
 
 ERROR, DISCARD = 3, 2
@@ -78,10 +79,13 @@ def probes(path):
     return found
 
 
-@pytest.mark.sampled(1)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
-def test_null_is_an_error_with_a_line(tmp_path, version):
-    path = export_fmu(ball_model(), tmp_path / "ball.fmu", version)
+@pytest.mark.parametrize("native", [False, True])
+def test_null_is_an_error_with_a_line(tmp_path, version, native):
+    if native and LIBRARY is None:
+        pytest.skip("FMUs without Python are made of the library of machine code")
+    path = export_fmu(ball_model(), tmp_path / "ball.fmu", version, native=native, t_end=1.0)
     done = subprocess.run([sys.executable, __file__, str(path)], capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, f"ended with {done.returncode}: {done.stderr[-2000:]}"
     found = json.loads(done.stdout)

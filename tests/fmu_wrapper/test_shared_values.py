@@ -14,6 +14,7 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from fmu_helpers import Messages, ball_model
 from tlismni.fmu_wrapper import export_fmu
+from tlismni.fmu_wrapper.build import shim_sources
 from tlismni.fmu_wrapper.fmi2_calls import Fmi2Calls
 from tlismni.fmu_wrapper.fmi3_calls import Fmi3Calls
 from tlismni.fmu_wrapper.in_process import InProcess
@@ -22,7 +23,6 @@ from tlismni.fmu_wrapper.platforms import PLATFORMS, this_platform
 from tlismni.fmu_wrapper.shared import LAYOUT
 from tlismni.fmu_wrapper.shared_calls import SharedCalls
 
-SHIM = Path(__file__).parents[2] / "fmu_wrapper" / "shim"
 CC = shutil.which("cc")
 MOVES = 400
 STEPS = (0.02, 0.02, 0.02, 1e-4, 1e-5, 0.3)
@@ -217,7 +217,7 @@ def test_a_binary_of_another_layout_shares_nothing_and_answers_the_same(tmp_path
         pair.unzipped, "binaries", here.folder(version), f"{pair.description.coSimulation.modelIdentifier}{here.suffix}"
     )
     flags = ["-std=c11", "-O2", "-shared", "-fPIC", f"-DSHARED_LAYOUT={LAYOUT + 1}", "-ldl", "-lpthread"]
-    sources = sorted(map(str, SHIM.glob("*.c")))
+    sources = list(map(str, shim_sources()))
     subprocess.run([CC, *sources, "-o", str(binary), *flags], check=True)
     step = count_calls(monkeypatch, SharedCalls, "step")
     pair.both = pair.start(pair.binary(pair.logs[0])), pair.both[1]

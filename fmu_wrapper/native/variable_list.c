@@ -1,35 +1,17 @@
-#include "files.h"
+#include "variable_list.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-#include "open_file.h"
 
 #define VARIABLES_MAGIC "TLISVARS"
 
-/* What stands before the variables (`variable_file.py`). */
+/* What stands before the variables (`native_export.py`). */
 typedef struct {
     char magic[8];
     int64_t version, count, arrays, elements;
     double rtol;
     char token[64];
 } VariablesHead;
-
-void *files_read(const char *path, size_t *size) {
-    FILE *file = open_file(path);
-    long length = file && fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
-    char *bytes = length >= 0 ? malloc((size_t)length + 1) : NULL;
-    if (bytes && (fseek(file, 0, SEEK_SET) != 0 || fread(bytes, 1, (size_t)length, file) != (size_t)length)) {
-        free(bytes);
-        bytes = NULL;
-    }
-    if (file) {
-        fclose(file);
-    }
-    *size = bytes ? (size_t)length : 0;
-    return bytes;
-}
 
 /* Where the lists behind the head begin; false if they do not fit. */
 static bool lists(Slave *slave, size_t size) {
@@ -57,7 +39,7 @@ static bool lists(Slave *slave, size_t size) {
     return true;
 }
 
-bool files_variables(Slave *slave, size_t size, const char *token, char *why, size_t room) {
+bool native_take_variables(Slave *slave, size_t size, const char *token, char *why, size_t room) {
     const VariablesHead *head = slave->file;
     if (size < sizeof *head || memcmp(head->magic, VARIABLES_MAGIC, sizeof head->magic) != 0 || head->version != 2 ||
         memchr(head->token, 0, sizeof head->token) == NULL || !lists(slave, size)) {

@@ -1,19 +1,15 @@
-/* Where an FMU's resources are, for both kinds of FMU: copies of texts and file URIs. Header only: the library of machine
- * code and the shim are built apart. What is given back is to be freed; NULL: there is no memory. */
-#ifndef TLISMNI_LOCATION_H
-#define TLISMNI_LOCATION_H
+#include "location.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A copy of a text. */
-static inline char *text_copy(const char *text) {
+char *text_copy(const char *text) {
     size_t size = strlen(text) + 1;
     char *copy = malloc(size);
     return copy ? memcpy(copy, text, size) : NULL;
 }
 
-static inline int location_digit(char c) {
+static int digit(char c) {
     if (c >= '0' && c <= '9') {
         return c - '0';
     }
@@ -21,8 +17,7 @@ static inline int location_digit(char c) {
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/* The path in a file URI, or the text itself if it is none (FMI 3.0 passes paths). */
-static inline char *location_path(const char *location) {
+char *location_path(const char *location) {
     char *path = text_copy(location);
     if (!path || strncmp(location, "file:", 5) != 0) {
         return path;
@@ -39,7 +34,7 @@ static inline char *location_path(const char *location) {
 #endif
     char *to = path;
     for (; *from; from++) {
-        int high = *from == '%' ? location_digit(from[1]) : -1, low = high >= 0 ? location_digit(from[2]) : -1;
+        int high = *from == '%' ? digit(from[1]) : -1, low = high >= 0 ? digit(from[2]) : -1;
         *to++ = low >= 0 ? (char)(16 * high + low) : *from;
         from += low >= 0 ? 2 : 0;
     }
@@ -49,5 +44,3 @@ static inline char *location_path(const char *location) {
     *to = '\0';
     return path;
 }
-
-#endif

@@ -1,24 +1,37 @@
-/* The functions of FMI 3.0 that neither kind of FMU has: types of variables that they do not use, clocks, structural
- * parameters, model exchange, scheduled execution. Each is there, since importers look up all of them. Who includes this
- * says before what they do: REFUSED(name, parameters) and REFUSED_PLAIN(name), for those of the instance alone. */
+/* The functions of FMI 3.0 that our FMUs have not, as their model descriptions say: types of variables that they do not use,
+ * clocks, structural parameters, model exchange, scheduled execution. Each is there, since importers look up all of them, and
+ * answers Error with a line in the log. */
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "functions.h"
 
 /* nothing is done with what they are given */
 #if defined __GNUC__ || defined __clang__
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #endif
 
+typedef Slave *fmi3Instance;
 typedef uint32_t fmi3ValueReference;
 typedef int fmi3Status;
 typedef int fmi3IntervalQualifier;
 typedef int fmi3DependencyKind;
 
+static fmi3Status refuse(fmi3Instance c, const char *function, const char *why) {
+    return IF(slave_host(c), host_error(slave_host(c), function, "UnavailableError: %s", why));
+}
+
+#define REFUSED(name, ...)                                 \
+    EXPORT fmi3Status name(fmi3Instance c, __VA_ARGS__) {  \
+        return refuse(c, __func__, WHY);                   \
+    }
+#define REFUSED_PLAIN(name)                \
+    EXPORT fmi3Status name(fmi3Instance c) { \
+        return refuse(c, __func__, WHY);   \
+    }
 #define REFERENCES const fmi3ValueReference vr[], size_t n
 
 /* types */
+
+#define WHY "this FMU has no variables of this type: modelDescription.xml says which types it has"
 
 REFUSED(fmi3GetFloat32, REFERENCES, float value[], size_t values)
 REFUSED(fmi3SetFloat32, REFERENCES, const float value[], size_t values)
@@ -39,6 +52,9 @@ REFUSED(fmi3SetBinary, REFERENCES, const size_t sizes[], const uint8_t *const va
 
 /* clocks */
 
+#undef WHY
+#define WHY "this FMU has no clocks"
+
 REFUSED(fmi3GetClock, REFERENCES, bool value[])
 REFUSED(fmi3SetClock, REFERENCES, const bool value[])
 REFUSED(fmi3GetIntervalDecimal, REFERENCES, double interval[], fmi3IntervalQualifier qualifier[])
@@ -54,6 +70,9 @@ REFUSED(fmi3ActivateModelPartition, fmi3ValueReference clock, double time)
 
 /* structure */
 
+#undef WHY
+#define WHY "this FMU has no structural parameters, and no dependencies per element"
+
 REFUSED_PLAIN(fmi3EnterConfigurationMode)
 REFUSED_PLAIN(fmi3ExitConfigurationMode)
 REFUSED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *count)
@@ -62,7 +81,14 @@ REFUSED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elemen
 
 /* model exchange */
 
+#undef WHY
+#define WHY "providesEvaluateDiscreteStates = false: use fmi3UpdateDiscreteStates"
+
 REFUSED_PLAIN(fmi3EvaluateDiscreteStates)
+
+#undef WHY
+#define WHY "this FMU does co-simulation only"
+
 REFUSED_PLAIN(fmi3EnterContinuousTimeMode)
 REFUSED(fmi3CompletedIntegratorStep, bool no_set_state, bool *enter_event_mode, bool *terminate)
 REFUSED(fmi3SetTime, double time)
