@@ -17,7 +17,7 @@ def core_digest() -> str:
     may be in the code."""
     digest, root = hashlib.sha256(), str(_CORE)
     for folder, folders, files in os.walk(root):
-        folders[:] = sorted(set(folders) - {"__pycache__", "ahead", "native"})
+        folders[:] = sorted(set(folders) - {"__pycache__", "aot", "native"})
         for file in sorted(files):
             if file.endswith(".py"):
                 with open(os.path.join(folder, file), "rb", buffering=0) as source:
