@@ -36,7 +36,7 @@ MESH_OF_TOLERANCE = 0.6
 """That exponent."""
 CRITICAL = 2.0
 """Decay over the vibration that takes the same steps of order 6, 1.2 over 0.55: that of critical damping."""
-DIES_OUT = 1.0
+DIES_OUT = 0.5
 """Decay in a step that error control allows, dimensionless, beyond which Adams formulas may be held by stability."""
 MOST_CONTACTS = 7
 """Contacts up to which new starts after events cost less than Runge-Kutta stages throughout."""
