@@ -61,7 +61,7 @@ class FakeSimulation:
         **unknown: Any,
     ) -> None:
         if method not in ("auto", "ebdf", "bdf") or unknown:
-            raise ModelError(f"unknown method '{method}' or options {sorted(unknown)}; known are ['auto', 'bdf', 'ebdf']")
+            raise ModelError(f"unknown method '{method}' or options {sorted(unknown)}; known are auto, bdf, ebdf")
         ball = model.bodies[0]
         self.mass, self.gravity = ball.mass * (0.5 if light else 1.0), -model.gravity[1]
         self.restitution = model.contacts[0].law.restitution
