@@ -14,6 +14,7 @@ from .compiled_model import compile_model
 from .errors import ModelError, SimulationError, TlismniError
 from .input_schedule import CourseRun
 from .input_signals import Courses, Given, courses
+from .methods.default import DEFAULT_METHOD
 from .results.result import Result
 from .simulation.simulation import Simulation
 from .tolerances import DEFAULT_ATOL
@@ -25,7 +26,7 @@ MOST_STEPS = 1e12
 def simulate(
     system: Any,
     t_end: float,
-    method: str = "ebdf",
+    method: str = DEFAULT_METHOD,
     rtol: float = 1e-6,
     atol: float | Mapping[str, float] = DEFAULT_ATOL,
     *,
@@ -45,7 +46,8 @@ def simulate(
     system : Model or EquationSystem.
     t_end : end time, s.
     method : one of `METHODS`, which describes them, or "auto": chosen from the model, its start and the tolerance;
-        `Result.method_chosen` says what was taken and why.
+        `Result.method_chosen` says what was taken and why. With fixed steps, an outer loop other than newton, or the
+        option `k` or `angle`, "auto" is "ebdf".
     rtol, atol : tolerances of the error control, on coordinates and velocities. atol's default, `OfScales(1e-9)`,
         is a part of the model's own scales (`Simulation.scales`); a plain number counts as it stands, in the units of q
         and v, and so do those of a mapping by kind ("length", "angle", "speed", "angular_speed").

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from ..core.equations.system import EquationSystem
+from ..core.methods.default import DEFAULT_METHOD
 from ..core.multibody_model import Model
 from ..core.tolerances import DEFAULT_ATOL
 from .errors import FmuValueError, SourceError
@@ -28,7 +29,7 @@ class Settings:
     communication_step : preferred communication step, s, or None.
     """
 
-    method: str = "ebdf"
+    method: str = DEFAULT_METHOD
     rtol: float = 1e-6
     atol: float = float(DEFAULT_ATOL)
     step: float = 0.0

@@ -135,7 +135,6 @@ def flexible_slider_crank_stop(
         model=model,
         t_end=0.2,
         atol=1e-8,
-        options={"k": 2},
         parameters={"damping": getattr(contact, "damping", None)},
         compare=("crank.angle", "crank.angular_velocity", "slider.x", "stop.normal_force", "stop.gap"),
     )

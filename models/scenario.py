@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+from ..core.methods.default import DEFAULT_METHOD
 from ..core.multibody_model import Model
 from ..core.tolerances import DEFAULT_ATOL
 from ..viewer.sketches import Sketch
@@ -32,7 +33,7 @@ class Scenario:
     description: str
     model: Model
     t_end: float
-    method: str = "ebdf"
+    method: str = DEFAULT_METHOD
     rtol: float = 1e-6
     atol: float = DEFAULT_ATOL
     options: Mapping[str, Any] = field(default_factory=_no_entries)

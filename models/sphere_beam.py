@@ -102,7 +102,6 @@ def sphere_beam(
         model=model,
         t_end=1.2 * beam_length**2 * 2.0 / math.pi * math.sqrt(line_mass / bending_stiffness) + gap / speed,
         atol=1e-10,  # the deepest penetration is half a micrometre
-        options={"k": 2},  # A-stable: the high modes that the blow excites shall not limit the step
         compare=("sphere.y", "blow.normal_force", "blow.gap"),
     )
 

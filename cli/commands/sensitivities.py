@@ -51,8 +51,8 @@ def sensitivities(
     if not names:
         raise typer.BadParameter("the model declares no parameters: name places of numbers", param_hint="--parameter")
     wanted = channels or list(scenario.compare)
-    settings: dict[str, Any] = {"method": method or "ebdf"}
-    settings |= {name: value for name, value in (("rtol", rtol), ("atol", atol)) if value is not None}
+    given = (("method", method), ("rtol", rtol), ("atol", atol))
+    settings: dict[str, Any] = {name: value for name, value in given if value is not None}
     with compile_notice():
         found = parameter_sensitivities(
             scenario.model, scenario.t_end, names, wanted,

@@ -10,6 +10,7 @@ from ..assembly.assembly import Assembly
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..assembly.partition import choose_dependent
 from ..errors import ModelError
+from ..methods.default import FIXED_STEPS_METHOD
 from ..multibody_model import Model
 from ..simulation.simulation import Simulation
 from ..time_loop.sample import write_sample
@@ -68,7 +69,8 @@ def run_of(system: Any, t0: float = 0.0, rate_rows: bool = False, **settings: An
     ------
     ModelError : beyond MOST_COORDINATES; ConsistencyError : for a start that does not meet the constraints.
     """
-    sim = Simulation(system, t0=t0, **settings)
+    # nothing is integrated: any formula, without measuring which
+    sim = Simulation(system, FIXED_STEPS_METHOD, t0=t0, **settings)
     if not rate_rows:
         refuse_rate_rows(sim.assembly, _idle_friction(system, sim))
     if sim.assembly.n > MOST_COORDINATES:

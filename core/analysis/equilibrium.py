@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled_model import compile_model
+from ..methods.default import FIXED_STEPS_METHOD
 from ..multibody_model import Model
 from ..simulation.simulation import Simulation
 from ..state.modes import ACTIVE, CLOSED
@@ -82,7 +83,10 @@ def static_equilibrium(system: Any, t: float = 0.0, start_values: dict[str, floa
     SimulationError : if there is no place of rest within reach: says what still moves.
     ConsistencyError, ModelError : as `Simulation`.
     """
-    sim = compile_model(system, t0=t).simulation(start=start_values) if start_values else run_of(system, t)
+    if start_values:
+        sim = compile_model(system, FIXED_STEPS_METHOD, t0=t).simulation(start=start_values)
+    else:
+        sim = run_of(system, t)
     search = Creep(sim)
     search.run()
     arrays, n, active = sim.workspace.arrays, sim.assembly.n, sim.workspace.structure.active

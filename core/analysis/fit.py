@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled_model import CompiledModel, compile_model
 from ..errors import ModelError, SimulationError, TlismniError
+from ..methods.default import DEFAULT_METHOD
 from ..simulate_one import check_times
 from ..worker_threads import in_threads
 
@@ -97,7 +98,7 @@ def fit(
     *,
     level: float = 0.95,
     threads: int | None = None,
-    method: str = "ebdf",
+    method: str = DEFAULT_METHOD,
     rtol: float = TIGHT,
     **settings: Any,
 ) -> Fit:

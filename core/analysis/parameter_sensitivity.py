@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..compiled_model import CompiledModel, compile_model
 from ..errors import ModelError, SimulationError
+from ..methods.default import DEFAULT_METHOD
 from ..simulate_batch import simulate_many
 
 Floats = NDArray[np.float64]
@@ -67,7 +68,7 @@ def parameter_sensitivities(
     t_eval: ArrayLike | None = None,
     change: float = CHANGE,
     threads: int | None = None,
-    method: str = "ebdf",
+    method: str = DEFAULT_METHOD,
     rtol: float = TIGHT,
     **settings: Any,
 ) -> ParameterSensitivities:

@@ -23,6 +23,7 @@ from ..events import Event, Fallback
 from ..events.progress import Progress
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..methods.automatic import AUTO
+from ..methods.default import DEFAULT_METHOD
 from ..methods.history import recall, restart
 from ..methods.registry import FINE_STARTER, Formula, get_formula
 from ..multibody_model import Model
@@ -43,7 +44,7 @@ from .ready import make_ready
 from .settings import START_TOLERANCE, Settings, set_control
 from .setup import build_loop, build_method, state_fields
 from .start import begin
-from .start_figures import with_choice
+from .start_figures import decided, decided_by_start
 from .surface_jumps import refuse_surface_jumps
 from .unbounded import warn_of_unbounded
 
@@ -78,7 +79,7 @@ class Engine(ContactSide):
     def __init__(
         self,
         system: Any,
-        method: str = "ebdf",
+        method: str = DEFAULT_METHOD,
         rtol: float = 1e-6,
         atol: float | Mapping[str, float] = DEFAULT_ATOL,
         *,
@@ -105,20 +106,20 @@ class Engine(ContactSide):
             newton_tolerance=newton_tolerance, start_tolerance=start_tolerance, redundant=redundant,
             max_steps=max_steps, method_options=dict(method_options),
         )  # fmt: skip
-        if method != AUTO.name:
-            get_formula(method, method_options)
+        settings = decided(settings)
+        if settings.method != AUTO.name:
+            get_formula(settings.method, settings.method_options)
         if not isinstance(system, Model) and not _is_equations(system):
             raise ModelError(f"a Model or an EquationSystem is needed to simulate, not {type(system).__name__}")
-        if method == AUTO.name:
-            settings = with_choice(settings, system)
+        self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()
+        self.workspace = Workspace(self.assembly, state_fields(self.assembly))
+        settings = decided_by_start(settings, self.assembly, self.workspace)
         self.formula: Formula = get_formula(settings.method, settings.method_options)
         self.rtol = self.formula.working_tolerance(rtol) if step is None else rtol
         """What the errors of steps are held to, relatively."""
         self.settings, self.system = settings, system
         refuse_surface_jumps(system, self.formula, settings.method)
-        self.assembly: Assembly = system.assemble(t0=t0) if isinstance(system, Model) else system.assemble()
         warn_of_unbounded(self.assembly)
-        self.workspace = Workspace(self.assembly, state_fields(self.assembly))
         self.table = ChannelTable(system, self.assembly)
         self.events: list[Event] = []
         self.progress: Callable[[float], None] | None = None

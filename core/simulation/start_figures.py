@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from ..assembly.assembly import Assembly
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.scales import MOST_TIMES
 from ..assembly.workspace import Workspace
-from ..errors import ModelError
+from ..errors import CallbackError, ModelError
 from ..laws import ForceLaw
-from ..methods.automatic import AUTO, Start, choose
-from ..multibody_model import Model
+from ..methods.automatic import AUTO, Choice, Start, choose, choose_by_settings, choose_unmeasured
+from ..methods.registry import METHODS
 from ..rounding import NO_STIFFNESS
 from .settings import Settings
 
@@ -24,12 +25,16 @@ PROBES = 4
 class _Point:
     """The start as it is given, without multipliers and at rest in accelerations: residuals and matrices of a model."""
 
-    def __init__(self, assembly: Assembly, t0: float) -> None:
-        self.workspace, self.n, self.rows = Workspace(assembly), assembly.n, assembly.m_joints
+    def __init__(self, assembly: Assembly, t0: float, workspace: Workspace) -> None:
+        self.workspace, self.n, self.rows = workspace, assembly.n, assembly.m_joints
         self.arrays = self.workspace.arrays
         self.arrays["t"][0] = t0
         self.arrays["q"][: self.n] = assembly.q0
         self.reach = self.arrays["level_scale"][: self.n].copy()
+
+    def at(self, t: float) -> None:
+        """Go to another time, s."""
+        self.arrays["t"][0] = t
 
     def look(self, v: Array) -> tuple[Array, Array, Array]:
         """With the velocities v (n,): -Q (n,), Phi_q v + Phi_t (rows,), and Phi'' without accelerations (rows,)."""
@@ -57,25 +62,44 @@ class _Point:
         return sizes
 
 
-def measure_start(assembly: Assembly, t0: float) -> Start:
-    """Its contacts, the rate of its motion, the fastest vibration and decay.
+def measure_start(assembly: Assembly, t0: float, workspace: Workspace | None = None) -> Start:
+    """Its contacts, the rate of its motion, the fastest vibration and decay, measured in the memory of a run that has
+    not begun (left out: in memory of its own), which is left as it was.
 
     Rate and vibration are those of the run's scales (`assembly/measure.py`): the vibration is the root of the largest
-    ratio of stiffness to mass of a coordinate, at rest. The decay is that of damping to mass, with the start's
-    velocities. What acts later is not seen.
+    ratio of stiffness to mass of a coordinate, at rest; forces and drivers that rest at first are looked at when they
+    have begun. The decay is that of damping to mass, at rest or with the start's velocities, whichever is more: what is
+    nearly dry friction damps slow motion alone.
+
+    Raises
+    ------
+    FloatingPointError : if forces or constraints are no finite numbers there.
     """
-    point, v0, rest = _Point(assembly, t0), np.asarray(assembly.v0, dtype=float), np.zeros(assembly.n)
+    workspace = workspace or Workspace(assembly)
+    kept, counted = workspace.state_bytes.copy(), workspace.arrays["counters"].copy()
+    try:
+        return _measured(_Point(assembly, t0, workspace), assembly, t0)
+    finally:
+        workspace.state_bytes[:], workspace.arrays["counters"][:] = kept, counted
+
+
+def _measured(point: _Point, assembly: Assembly, t0: float) -> Start:
+    v0, rest = np.asarray(assembly.v0, dtype=float), np.zeros(assembly.n)
     scale = np.where(assembly.is_internal, 0.0, np.asarray(assembly.coordinate_scale, dtype=float))
     mass, sizes = np.abs(point.diagonal(rest, 0.0, 0.0)), point.row_sizes(scale)
     moves = (mass > 0.0) & (scale > 0.0)
     with np.errstate(all="ignore"):
         stiffness = np.abs(point.diagonal(rest, 1.0, 0.0) - point.diagonal(rest, 0.0, 0.0)) / mass
-        damping = np.abs(point.diagonal(v0, 0.0, 1.0) - point.diagonal(v0, 0.0, 0.0)) / mass
+        dampings = [np.abs(point.diagonal(v, 0.0, 1.0) - point.diagonal(v, 0.0, 0.0)) / mass for v in (rest, v0)]
         squares = [(v0 / point.reach) ** 2]
-        for v in (rest, v0):
-            r, phid, phidd = point.look(v)
-            squares += [(np.abs(r) / (mass * point.reach))[moves], np.abs(phidd) / sizes]
-            squares += [(phid / sizes) ** 2] if v is rest else []
+        for later in _later_times(assembly, t0):
+            point.at(t0 + later)
+            for v in (rest, v0):
+                r, phid, phidd = point.look(v)
+                if not (np.all(np.isfinite(r)) and np.all(np.isfinite(phid)) and np.all(np.isfinite(phidd))):
+                    raise FloatingPointError(f"forces or constraints at t = {t0 + later:g} s are no finite numbers")
+                squares += [(np.abs(r) / (mass * point.reach))[moves], np.abs(phidd) / sizes]
+                squares += [(phid / sizes) ** 2] if v is rest else []
     stiffness = stiffness[moves & (stiffness > NO_STIFFNESS)]
     return Start(
         contacts=len(assembly.contacts),
@@ -83,9 +107,16 @@ def measure_start(assembly: Assembly, t0: float) -> Start:
         rate=float(np.sqrt(max(_largest(x) for x in squares))),
         vibration=float(np.sqrt(_largest(stiffness))),
         slowest=float(np.sqrt(np.min(stiffness, initial=_largest(stiffness)))),
-        decay=_largest(damping[mass > 0.0]),
+        decay=max(_largest(damping[mass > 0.0]) for damping in dampings),
         waves=assembly.has_waves,
     )
+
+
+def _later_times(assembly: Assembly, t0: float) -> list[float]:
+    """Now, and times after t0 at which forces and drivers that rest at first have begun, s."""
+    ahead = [t - t0 for t in assembly.breakpoints if t > t0]
+    longest = [0.5 * assembly.longest_step, assembly.longest_step] if np.isfinite(assembly.longest_step) else []
+    return [0.0, *ahead[:: max(1, -(-len(ahead) // MOST_TIMES))], *longest]
 
 
 def _largest(x: Any) -> float:
@@ -93,19 +124,42 @@ def _largest(x: Any) -> float:
     return float(np.max(finite, initial=0.0))
 
 
-def with_choice(settings: Settings, system: Any) -> Settings:
-    """Settings of `method="auto"` with the method that it takes for a Model or EquationSystem.
+def decided(settings: Settings) -> Settings:
+    """Settings with the method that `method="auto"` takes whatever the model; the same if the model decides.
 
     Raises
     ------
-    ModelError : for options, which belong to one method.
+    ModelError : for options that belong to another method.
     """
-    if settings.method_options:
-        raise ModelError(
-            f"method '{AUTO.name}' has no option {sorted(settings.method_options)}: options belong to the method that "
-            "it takes; give that by its name"
-        )
-    # an assembly of its own: the functions of own equations work in the memory of one run
-    assembly = system.assemble(t0=settings.t0) if isinstance(system, Model) else system.assemble()
-    choice = choose(measure_start(assembly, settings.t0), settings.rtol, settings.step, settings.outer)
+    if settings.method != AUTO.name:
+        return settings
+    choice = choose_by_settings(settings.method_options, settings.step, settings.outer)
+    if choice is None and settings.method_options:
+        raise _no_options(settings)
+    return settings if choice is None else _with(settings, choice)
+
+
+def decided_by_start(settings: Settings, assembly: Assembly, workspace: Workspace) -> Settings:
+    """Settings with the method that `method="auto"` takes for a model, in the memory of its run."""
+    if settings.method != AUTO.name:
+        return settings
+    try:
+        choice = choose(measure_start(assembly, settings.t0, workspace), settings.rtol)
+    except (CallbackError, FloatingPointError) as error:
+        own = assembly.user_error[-1] if assembly.user_error else error
+        assembly.user_error.clear()
+        choice = choose_unmeasured(f"{type(own).__name__}: {own}")
+    return _with(settings, choice)
+
+
+def _with(settings: Settings, choice: Choice) -> Settings:
     return replace(settings, method=choice.method, method_options=choice.options, method_chosen=str(choice))
+
+
+def _no_options(settings: Settings) -> ModelError:
+    names = sorted(settings.method_options)
+    owners = [name for name, method in METHODS.items() if set(names) <= set(method.options)]
+    return ModelError(
+        f"method '{AUTO.name}' has no option {names}: options belong to the method that it takes; give a method by its "
+        f"name" + (f", here one of {owners}" if owners else "")
+    )

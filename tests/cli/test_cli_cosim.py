@@ -88,7 +88,7 @@ def test_a_bundled_fmu_says_so(tlismni: Command, tmp_path: Path) -> None:
     (drive,) = found["terminals"]
     assert drive["name"] == "drive" and drive["members"]["torque"] == "torque"
     variables = {v["name"]: v for v in found["variables"]}
-    assert variables["solver.method"]["start"] == "ebdf" and "irk" in variables["solver.method"]["choices"]
+    assert variables["solver.method"]["start"] == "auto" and "irk" in variables["solver.method"]["choices"]
     assert (variables["restitution"]["min"], variables["restitution"]["max"]) == (0.0, 1.0)
     assert variables["stop.law"]["start"] == "NewtonImpact"
     shown = tlismni("info", path).out

@@ -155,7 +155,7 @@ def test_model_file_needs_an_end_time(tlismni: Command, tmp_path: Path) -> None:
         (("chain", "--set", "links=0"), "outside [1, 20000]"),
         (("pendulum_stop", "--set", "law=rubber"), "'rubber' is not one of"),
         (("chain", "--method", "euler"), "unknown method 'euler'"),
-        (("chain", "--option", "order=2"), "method 'ebdf' has no option ['order']"),
+        (("chain", "--option", "order=2"), "method 'auto' has no option ['order']"),
         (("chain", "--option", "k=9"), "must be a whole number from 1 to 8"),
         (("chain", "--option", "k=two"), "not 'two'"),
         (("chain", "--option", "record=false"), "no option ['record']"),

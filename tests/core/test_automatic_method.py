@@ -5,13 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tlismni.core import (
+    AppliedForce2D,
+    Bushing2D,
+    Constant,
     EquationSystem,
+    Marker2D,
+    Model,
     ModelError,
+    Ramp,
+    RigidBody2D,
     Simulation,
     compile_model,
     simulate,
 )
 from tlismni.core.methods.automatic import METHOD_NAMES, Start, choose, described
+from tlismni.core.methods.default import DEFAULT_METHOD
+from tlismni.core.methods.registry import METHODS
 from tlismni.core.simulation.start_figures import measure_start
 from tlismni.core.state.workspace_records import STIFFNESS_SCALE
 from tlismni.models import load
@@ -56,7 +65,16 @@ def test_impacts_on_a_fine_mesh_are_met_with_a_formula_that_is_stable_with_any_s
 
 @pytest.mark.parametrize(
     "elements, rtol, taken",
-    [(8, 1e-2, "adams"), (128, 1e-3, "irk"), (512, 1e-3, "irk"), (32, 1e-2, "irk"), (32, 1e-6, "adams")],
+    [
+        (8, 1e-2, "adams"),
+        (128, 1e-3, "irk"),
+        (512, 1e-3, "irk"),
+        (32, 1e-2, "irk"),
+        (32, 1e-6, "adams"),
+        (64, 1e-3, "adams"),
+        (64, 1e-2, "irk"),
+        (128, 1e-4, "adams"),
+    ],
 )
 def test_waves_of_a_mesh_are_followed_only_where_the_tolerance_does(elements, rtol, taken):
     settings = chosen(CABLE, rtol, elements=elements)
@@ -69,7 +87,7 @@ def test_stiff_springs_and_dampers_ask_for_formulas_that_are_stable_with_any_ste
     assert (soft.method, stiff.method) == ("adams", "irk")
     start = Start(rate=1.0, decay=1e5)
     choice = choose(start, 1e-6)
-    assert choice.method == "irk" and "decay of up to 1e+05 1/s" in choice.reason
+    assert choice.method == "ebdf" and "decay of up to 1e+05 1/s dies out" in choice.reason
 
 
 @pytest.mark.parametrize("name, elements", [("chain", None), (CABLE, 8), (CABLE, 64), ("heavy_top", None)])
@@ -112,23 +130,82 @@ def test_a_compiled_model_chooses_once():
 def test_equations_of_the_users_own():
     def system(stiffness):
         return EquationSystem(
-            mass=lambda t, q: np.eye(1), force=lambda t, q, v: -stiffness * q + np.array([1.0]), q0=[1.0], v0=[0.0]
+            mass=lambda t, q: np.eye(1), force=lambda t, q, v: -stiffness * q + np.array([1.0]), q0=[2.0], v0=[0.0]
         )
 
     assert Simulation(system(1.0), "auto", 1e-4).settings.method == "adams"
 
 
-def test_fixed_steps_and_other_outer_loops_take_the_default():
+def test_fixed_steps_and_other_outer_loops_take_ebdf():
     model = load(SMOOTH).model
     for options, word in (({"step": 1e-3}, "fixed"), ({"outer": "jfnk"}, "jfnk")):
         settings = Simulation(model, "auto", **options).settings
         assert settings.method == "ebdf" and word in settings.method_chosen
 
 
-def test_it_has_no_options():
-    with pytest.raises(ModelError, match=r"'auto' has no option.*'k'.*options belong to the method"):
-        simulate(load(SMOOTH).model, 0.1, "auto", k=3)
+@pytest.mark.parametrize("options", [{"k": 3}, {"k": "auto", "angle": 80.0}, {"k": 2, "step": 1e-3}])
+def test_an_option_of_ebdf_means_ebdf_as_when_that_was_the_default(options):
+    model = load(SMOOTH).model
+    found, given = simulate(model, 0.1, **options), simulate(model, 0.1, "ebdf", **options)
+    assert found.method_chosen.startswith("ebdf (k=") and np.array_equal(found.samples, given.samples, equal_nan=True)
+    with pytest.raises(ModelError, match="k"):
+        simulate(model, 0.1, k=100)
+
+
+def test_options_of_other_methods_are_refused_and_owners_named():
+    with pytest.raises(ModelError, match=r"'auto' has no option \['order'\].*\['bdf', 'adams'\]"):
+        simulate(load(SMOOTH).model, 0.1, order=3)
+
+
+def test_it_is_the_default():
+    model = load(SMOOTH).model
+    assert DEFAULT_METHOD == "auto" and simulate(model, 0.1).method_chosen.startswith("adams (order=6)")
+    assert Simulation(model).settings.method == compile_model(model).simulation().settings.method == "adams"
+    assert load(SMOOTH).method == "auto"
+
+
+def test_what_rests_at_first_is_looked_at_when_it_has_begun():
+    """A stiff bushing that a late force bends slowly: at the start nothing moves."""
+
+    def start(force):
+        body = RigidBody2D(name="body", mass=1.0, inertia=0.1)
+        bushing = Bushing2D(name="bushing", a=Marker2D(), b=Marker2D(body="body"), stiffness=1e8)
+        load_later = AppliedForce2D(name="force", marker=Marker2D(body="body"), force_x=force)
+        model = Model(name="late", gravity=(0.0, 0.0), bodies=[body], forces=[bushing, load_later])
+        return measure_start(model.assemble(t0=0.0), 0.0)
+
+    still, late = start(Constant(value=0.0)), start(Ramp(start=0.5, duration=1.0, after=10.0))
+    assert still.rate == 0.0 and "all rests" in choose(still, 1e-6).reason
+    assert late.rate > 0.0 and choose(late, 1e-3).method == choose(still, 1e-3).method == "irk"
+
+
+def test_friction_that_is_nearly_dry_is_seen_while_it_slides():
+    def start(v):
+        system = EquationSystem(
+            mass=np.eye(1), force=lambda t, q, v: np.array([-np.tanh(1e4 * v[0])]), q0=[0.0], v0=[v], coordinates=["x"]
+        )
+        return measure_start(system.assemble(), 0.0)
+
+    assert start(1.0).decay == pytest.approx(1e4, rel=1e-6) == start(0.0).decay
+    assert choose(start(1.0), 1e-6).method == "ebdf"
+
+
+def test_measuring_leaves_no_trace_in_the_run():
+    model = load(CABLE).model
+    auto, given = Simulation(model, "auto", 1e-6), Simulation(model, "adams", 1e-6, order=6)
+    assert auto.state() == given.state() and auto.stats == given.stats
+
+
+def test_a_start_that_cannot_be_measured_is_said_and_left_to_ebdf():
+    """Constant power: no finite force at rest, where the measurement looks too."""
+    system = EquationSystem(
+        mass=np.eye(1), force=lambda t, q, v: np.array([1.0 / v[0]]), q0=[0.0], v0=[1.0], coordinates=["x"]
+    )
+    result = simulate(system, 4.0, rtol=1e-8)
+    assert result.settings["method"] == "ebdf"
+    assert "could not be measured (FloatingPointError: forces or constraints at t = 0 s" in result.method_chosen
+    assert result["x"][-1] == pytest.approx((9.0**1.5 - 1.0) / 3.0, rel=1e-6)
 
 
 def test_it_is_listed_last_so_that_numbers_of_others_stay():
-    assert METHOD_NAMES[-1] == "auto" and described("auto").options == {}
+    assert METHOD_NAMES[-1] == "auto" and described("auto").options == METHODS["ebdf"].options

@@ -47,7 +47,7 @@ class FakeSimulation:
     def __init__(
         self,
         model: Any,
-        method: str = "ebdf",
+        method: str = "auto",
         rtol: float = 1e-6,
         atol: float = 1e-9,
         step: float | None = None,
@@ -60,8 +60,8 @@ class FakeSimulation:
         max_steps: int | None = None,
         **unknown: Any,
     ) -> None:
-        if method not in ("ebdf", "bdf") or unknown:
-            raise ModelError(f"unknown method '{method}' or options {sorted(unknown)}; known are ['bdf', 'ebdf']")
+        if method not in ("auto", "ebdf", "bdf") or unknown:
+            raise ModelError(f"unknown method '{method}' or options {sorted(unknown)}; known are auto, bdf, ebdf")
         ball = model.bodies[0]
         self.mass, self.gravity = ball.mass * (0.5 if light else 1.0), -model.gravity[1]
         self.restitution = model.contacts[0].law.restitution

@@ -3,13 +3,13 @@
 from tlismni.core.contacts.contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from tlismni.core.elements import AppliedForce2D, PointMass2D
 from tlismni.core.laws import LAWS, NewtonImpact
-from tlismni.core.methods.registry import METHODS as REGISTRY
+from tlismni.core.methods.automatic import METHOD_NAMES
 from tlismni.core.model.channels import Input, Parameter
 from tlismni.core.model.markers import Marker2D
 from tlismni.core.model.signals import InputSignal
 from tlismni.core.multibody_model import Model
 
-METHODS = list(REGISTRY)
+METHODS = list(METHOD_NAMES)
 """Items of `solver.method`: its values are 0, 1, ..."""
 
 LAW_NAMES = [law.__name__ for law in LAWS.values()]

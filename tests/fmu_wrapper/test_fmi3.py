@@ -100,7 +100,7 @@ def test_description(host):
     assert flags.hasEventMode and flags.canGetAndSetFMUstate and flags.canSerializeFMUstate
     assert flags.canHandleVariableCommunicationStepSize
     kinds = {v.name: (v.type, v.causality, v.variability, v.start) for v in host.description.modelVariables}
-    assert kinds["solver.method"] == ("Enumeration", "parameter", "fixed", str(METHODS.index("ebdf")))
+    assert kinds["solver.method"] == ("Enumeration", "parameter", "fixed", str(METHODS.index("auto")))
     assert kinds["push"] == ("Float64", "input", "continuous", "1.0")
     assert kinds["floor.in_contact"] == ("Boolean", "output", "discrete", None)
     outputs = {v.name for v in host.description.modelVariables if v.causality == "output"}
@@ -243,14 +243,14 @@ def test_all_kinds_of_values(make_host):
     fmu.setInt32([vr["solver.order"]], [5])
     fmu.setBoolean([vr["solver.light"]], [True])
     fmu.setString([vr["solver.variant"]], ["grün %d"])
-    fmu.setInt64([vr["solver.method"]], [METHODS.index("ebdf")])
+    fmu.setInt64([vr["solver.method"]], [METHODS.index("auto")])
     fmu.setFloat64([vr["mass"], vr["push"]], [1.0, 2.0])
     fmu.enterInitializationMode(tolerance=1e-3, stopTime=1.0)
     assert fmu.getInt32([vr["solver.order"], vr["solver.events"]]) == [5, 0]
     assert fmu.getBoolean([vr["solver.light"], vr["floor.in_contact"]]) == [True, False]
     assert fmu.getInt64([vr["floor.state"]]) == [0]
     assert fmu.getString([vr["solver.variant"], vr["solver.variant"]]) == ["grün %d", "grün %d"]
-    assert fmu.getInt64([vr["solver.method"], vr["floor.law"]]) == [METHODS.index("ebdf"), 0]
+    assert fmu.getInt64([vr["solver.method"], vr["floor.law"]]) == [METHODS.index("auto"), 0]
     assert fmu.getFloat64([vr["mass"], vr["ball.ay"], vr["solver.rtol"]]) == [1.0, 2.0 / 0.5 - 9.81, 1e-3]
     assert fmu.getFloat64([]) == [] and fmu.getString([]) == []
     fmu.setFloat64([], [])

@@ -37,7 +37,7 @@ def test_variables_and_value_references(fake_fmu):
     }
     assert found == {
         "time": (1, "Real", "independent", "continuous", "s", None),
-        "solver.method": (2, "Enumeration", "parameter", "fixed", None, str(METHODS.index("ebdf"))),
+        "solver.method": (2, "Enumeration", "parameter", "fixed", None, str(METHODS.index("auto"))),
         "solver.rtol": (3, "Real", "parameter", "fixed", "1", "1e-06"),
         "solver.atol": (4, "Real", "parameter", "fixed", "1", "1e-09"),
         "solver.step": (5, "Real", "parameter", "fixed", "s", "0.0"),
@@ -88,7 +88,7 @@ def test_the_documentation_names_parts_and_variables(fake_fmu, version):
     assert page.startswith("<!DOCTYPE html>") and root.findtext("body/p") == "a <ball> & a floor"
     cells = {cell.text for cell in root.iter("td")}
     assert {v.name for v in fmpy.read_model_description(path).modelVariables} - {"time"} <= cells
-    assert {"DiskOnHalfPlane2D", "AppliedForce2D", "PointMass2D", "FloorState", "N", "ebdf"} <= cells
+    assert {"DiskOnHalfPlane2D", "AppliedForce2D", "PointMass2D", "FloorState", "N", "auto"} <= cells
 
 
 def test_default_experiment_and_capabilities(fake_fmu):

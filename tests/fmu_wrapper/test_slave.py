@@ -92,7 +92,7 @@ def test_outputs_can_be_read_in_initialization_mode(fake_slave):
     slave.set_by_name({"mass": 1.0, "push": 3.0})
     assert slave["ball.ay"] == 3.0 - 9.81
     assert slave["floor.in_contact"] is False and slave["floor.mode"] == 0
-    assert slave["solver.method"] == "ebdf"
+    assert slave["solver.method"] == "auto"
 
 
 @pytest.mark.parametrize(
