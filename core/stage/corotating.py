@@ -22,10 +22,11 @@ stand for q*, v* and with k = 2 W v* + W^2 q*, D = (1 + 2 c_v W + c_q W^2)^-1
 
 D differs from 1 by the angle of a step: the matrices of the outer loop need not know it.
 
-The constraints give one component of p at least, which is another direction of u at each time. So a stage has two
-points: z of the formula, all four components of it, and (u, u', u'') of p on the constraints, at which the forces are.
-Other stages see z, z', z''. That is the formula for z'' = R^-1 (p''(u, u', t) - ...), a smooth equation in all four
-components, which the motion solves: the order stays. Of points on the constraints it would be none of one equation.
+The constraints give one component of p at least, which is another direction of u at each time. So a stage of a
+Runge-Kutta formula has two points: z of the formula, all four components of it, and (u, u', u'') of p on the
+constraints, at which the forces are. Other stages see z, z', z''. That is the formula for z'' = R^-1 (p''(u, u', t) -
+...), a smooth equation in all four components, which the motion solves: the order stays. Of points on the constraints
+it would be none of one equation. Formulas with one time see these: their error estimates then know what constraints do.
 """
 
 from typing import Any
@@ -215,29 +216,38 @@ def _begin_stage(workspace: Any, spin: Any, i: int, t: float, c_q: float, c_v: f
 
 @internal
 def solve_spinning_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
-    """Solve a stage whose q*, v* and predicted a are those of the turning frames, if there are some. Its z, z' and z''
-    are in the workspace then; its point on the constraints is remembered, and powers are those of that."""
+    """Solve a stage whose q*, v* and predicted a are those of the turning frames, if there are some; so is its
+    solution. Powers are those of the solution in space then."""
     n = workspace.n_ext
-    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
-    q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
     spins, spinning = mat(workspace.spin, workspace.n_spins, SPIN_SIZE), ivec(workspace.spinning, workspace.n_spins)
     for k in range(workspace.n_spins):
         _begin_stage(workspace, spins[k], spinning[k], t, c_q, c_v)
     status = call_stage(workspace.plain_stage, workspace, t, c_q, c_v)
     if status == OK and workspace.n_spins > 0:
         evaluate_power(workspace)
-        _remember(workspace)
-        for k in range(workspace.n_spins):
-            i = spinning[k]
-            put_four(q, i, plus_times(four_of(q_star, i), four_of(a, i), c_q))
-            put_four(v, i, plus_times(four_of(v_star, i), four_of(a, i), c_v))
-        add_in_frame(workspace, a)
-        for k in range(workspace.n_spins):
-            enter(spins[k], t, q, v, a, spinning[k])
+        enter_frame(workspace)
     for k in range(workspace.n_spins):
-        put_four(q_star, spinning[k], four_of(spins[k], STARS))
-        put_four(v_star, spinning[k], four_of(spins[k], STARS + 4))
+        put_four(vec(workspace.q_star, n), spinning[k], four_of(spins[k], STARS))
+        put_four(vec(workspace.v_star, n), spinning[k], four_of(spins[k], STARS + 4))
     return status
+
+
+@internal
+def use_formula(workspace: Any, c_q: float, c_v: float) -> None:
+    """z, z' and z'' in place of the stage's point on the constraints: p'' is that of both."""
+    n = workspace.n_ext
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        q_star, v_star = four_of(vec(workspace.q_star, n), i), four_of(vec(workspace.v_star, n), i)
+        off = times_rate(spin, plus_times(four_of(q, i), q_star, -1.0))
+        off = plus_times(off, plus_times(four_of(v, i), v_star, -1.0), 2.0)
+        whole = plus_times(four_of(a, i), times_rate(spin, off), 1.0)
+        # D of it
+        whole = plus_times(whole, times_function(spin, four_of(spin, OF_Q), whole), 1.0 / c_q)
+        put_four(q, i, plus_times(q_star, whole, c_q))
+        put_four(v, i, plus_times(v_star, whole, c_v))
+        put_four(a, i, whole)
 
 
 @internal
