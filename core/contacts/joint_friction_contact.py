@@ -70,7 +70,7 @@ def joint_friction_kernel(job: int, t: float, b: Any) -> None:
     for e in range(b.count):
         kind, size, gain = int(par[e, KIND]), par[e, SIZE], par[e, GAIN]
         own, pair = ivec(b.coord + 8 * (e * b.ncoord + 1), n), vec(b.par + 8 * (e * b.npar + PAIR), b.npar - PAIR)
-        s = measure_of(kind, q, own, pair, 0.0, gradient, square)
+        s = measure_of(kind, q, own, pair, 0.0, gradient, square, True)
         for i in range(n):
             tangent[1 + i] = gradient[i]
         pack(square, hessian[n + 1 :])

@@ -19,25 +19,28 @@ KINDS: Mapping[Measure, int] = {"angle": TURN, "slide": SLIDE, "distance": SPAN}
 
 
 @internal
-def measure2d(kind: int, q: Any, coord: Any, par: Any, gradient: Any, hessian: Any) -> float:
-    """The measure of this kind, rad or m; its derivatives go into gradient (n,) and hessian (n, n)."""
+def measure2d(kind: int, q: Any, coord: Any, par: Any, gradient: Any, hessian: Any, bent: bool) -> float:
+    """The measure of this kind, rad or m; its derivatives go into gradient (n,) and, if `bent`, hessian (n, n)."""
     if kind == TURN:
         b = len(gradient) - 1
         a = b // 2
         gradient[:] = 0.0
-        hessian[:, :] = 0.0
         gradient[a], gradient[b] = -1.0, 1.0
+        if bent:
+            hessian[:, :] = 0.0
         return q[coord[b]] + par[5] - (q[coord[a]] + par[2])
     if kind == SLIDE:
         x, first, second = height_over_line(q, coord, par[0], par[1], par[3], par[4], par[2])
     else:
         x, first, second = distance(q, coord, par[0], par[1], par[3], par[4])
-    k = 0
-    for i in range(len(first)):
+    for i in range(6):
         gradient[i] = first[i]
-        for j in range(i, len(first)):
-            hessian[i, j] = hessian[j, i] = second[k]
-            k += 1
+    if bent:
+        k = 0
+        for i in range(6):
+            for j in range(i, 6):
+                hessian[i, j] = hessian[j, i] = second[k]
+                k += 1
     return x
 
 

@@ -79,7 +79,7 @@ def measured_force_kernel(job: int, t: float, b: Any) -> None:
     for e in range(b.count):
         about, signal = par[e, START] + v[extra[e, TURNED]], extra[e, SIGNAL]
         pair = vec(b.par + 8 * (e * b.npar + PAIR), width)
-        x = measure_of(int(par[e, KIND]), q, coord[e], pair, about, gradient, hessian)
+        x = measure_of(int(par[e, KIND]), q, coord[e], pair, about, gradient, hessian, job == TANGENT)
         rate = along(gradient, v, coord[e])
         force, by_value, by_rate, lost, given, stored = force_of(par[e], pool, inputs, signal, t, x, rate)
         if job == RESIDUAL:

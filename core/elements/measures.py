@@ -12,12 +12,14 @@ from .measure3d import measure
 
 
 @internal
-def measure_of(kind: int, q: Any, coord: Any, par: Any, about: float, gradient: Any, hessian: Any) -> float:
+def measure_of(
+    kind: int, q: Any, coord: Any, par: Any, about: float, gradient: Any, hessian: Any, bent: bool
+) -> float:  # fmt: skip
     """The measure of this kind for coordinates (n,) and parameters of a pair of markers; its derivatives go into
-    gradient (n,) and hessian (n, n). Of angles that differ by whole turns it is the one nearest to `about`, in space;
-    planar bodies count turns."""
+    gradient (n,) and hessian (n, n), which may be left as it is unless `bent`. Of angles that differ by whole turns it
+    is the one nearest to `about`, in space; planar bodies count turns."""
     if kind >= TURN:
-        return measure2d(kind, q, coord, par, gradient, hessian)
+        return measure2d(kind, q, coord, par, gradient, hessian, bent)
     return measure(kind, q, coord, par, about, gradient, hessian)
 
 

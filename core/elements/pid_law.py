@@ -48,7 +48,8 @@ def pid_controller_kernel(job: int, t: float, b: Any) -> None:
             where = ivec(b.coord + 8 * (e * size + width * side), width)
             own = vec(b.par + 8 * (e * b.npar + PAIRS + columns * side), columns)
             about = par[e, START] + v[extra[e, 2]] if side == 1 else 0.0
-            x = measure_of(int(par[e, DRIVEN + side]), q, where, own, about, slopes[side], bent[side])
+            kind = int(par[e, DRIVEN + side])
+            x = measure_of(kind, q, where, own, about, slopes[side], bent[side], job == TANGENT)
         ours, theirs, z = coord[e, :width], coord[e, width:state], coord[e, state]
         gain, rate_gain, limit, pace = par[e, GAIN], par[e, RATE_GAIN], par[e, LIMIT], par[e, PACE]
         f, df, _ = evaluate_signal(pool, inputs, extra[e, 0], t)

@@ -41,7 +41,7 @@ def relative_motor2d_kernel(job: int, t: float, b: Any) -> None:
         if job == POWER:
             vec(b.a, b.n_extended)[extra[e, 1]] -= vec(b.lam, b.m_extended)[k] * df
             continue
-        x = measure2d(int(par[e, 0]), q, coord[e], par[e, 1:], gradient, hessian)
+        x = measure2d(int(par[e, 0]), q, coord[e], par[e, 1:], gradient, hessian, True)
         pack(hessian, packed)
         constrain(b, job, e, k, 0, x, gradient, packed)
         if job == RESIDUAL:
