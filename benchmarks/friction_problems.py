@@ -69,7 +69,7 @@ def dense_solver() -> Callable[[Any, Any, Any], tuple[bool, Any]]:
     import numba
     from tlismni.core.compiled.jit import address_of
     from tlismni.core.contact_solvers.friction_cones import (
-        FOUND,
+        CONES_SOLVED,
         MOST_SWEEPS,
         friction_cones_size,
         solve_friction_cones,
@@ -90,7 +90,7 @@ def dense_solver() -> Callable[[Any, Any, Any], tuple[bool, Any]]:
         status = call(n, a, b, mu.astype(float), np.zeros(n), np.zeros((2, n)), p, work.ctypes.data)
         forces = np.empty(3 * n)
         forces[order] = p
-        return status == FOUND, forces
+        return status == CONES_SOLVED, forces
 
     return solve
 

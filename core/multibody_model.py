@@ -17,7 +17,7 @@ from .model.array_files import beside
 from .model.base import Gravity, Record
 from .model.channels import Formula, Input, Parameter
 from .model.files import is_yaml, read_json, read_yaml, with_lines, write_yaml
-from .model.given_numbers import GRAVITY, KINDS, STANDARD_GRAVITY, with_given_numbers
+from .model.given_numbers import GRAVITY, RECORD_LISTS, STANDARD_GRAVITY, with_given_numbers
 from .model.markers import GROUND, Marker
 from .model.open_union import meaning
 from .model.outputs import MarkerOutput
@@ -228,7 +228,7 @@ class Model(Record):
             sets.
         """
         data = self.model_dump(mode="json")
-        elements = {e["name"]: e for kind in KINDS for e in data[kind]}
+        elements = {e["name"]: e for kind in RECORD_LISTS for e in data[kind]}
         declared = {p["name"]: p for p in data["parameters"]}
         for name, value in values.items():
             parameter = self._place(name) if "." in name else self._parameter(name)

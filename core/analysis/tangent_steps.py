@@ -10,7 +10,7 @@ from ..methods.history import history_time
 from ..state.run_records import CHUNK
 from ..time_loop.time_loop import run
 from .linearise import linearise
-from .variational_equation import NODES, STAGES, carry
+from .variational_equation import GAUSS_NODES, GAUSS_STAGES, carry
 
 SUBSTEP = 0.2
 """Largest substep times the highest frequency: the relative error of Gauss' formula is then below 1e-9 a radian."""
@@ -26,9 +26,9 @@ def _times(t0: float, t1: float, substeps: int, times: Any) -> None:
     h = (t1 - t0) / substeps
     times[0] = t0
     for s in range(substeps):
-        for i in range(STAGES):
-            times[1 + STAGES * s + i] = t0 + h * (s + NODES[i])
-    times[STAGES * substeps + 1] = t1
+        for i in range(GAUSS_STAGES):
+            times[1 + GAUSS_STAGES * s + i] = t0 + h * (s + GAUSS_NODES[i])
+    times[GAUSS_STAGES * substeps + 1] = t1
 
 
 @internal
@@ -69,7 +69,7 @@ def fly(
     """
     rows, cols, colours, scale = layout
     times, mass, k, d, phi_q, rate, points, zeros, r, old_dq, old_dv = room
-    capacity = (len(times) - 2) // STAGES
+    capacity = (len(times) - 2) // GAUSS_STAGES
     n, columns = dq.shape
     for _ in range(most):
         t0 = history_time(method, 0)
@@ -83,7 +83,7 @@ def fly(
                 substeps = max(1, math.ceil((t1 - t0) * totals[0] / SUBSTEP))
                 if substeps > capacity:
                     return STEP_LEFT
-                count = STAGES * substeps + 2
+                count = GAUSS_STAGES * substeps + 2
                 _times(t0, t1, substeps, times)
                 failed = linearise(
                     workspace, method, times[:count], rows, cols, colours, mass[:count], k[:count], d[:count],

@@ -18,7 +18,7 @@ from .layout import Layout, Layouts, mass_rates
 from .linearise import linearise
 from .saltation import cross, look
 from .tangent_steps import STEP_LEFT, SUBSTEP, fly
-from .variational_equation import NODES, STAGES, Work, carry, make_work
+from .variational_equation import GAUSS_NODES, GAUSS_STAGES, Work, carry, make_work
 
 Floats = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ class Variation:
         """Room for what `carry` and `fly` compute in the present structure."""
         n, m, columns = layout.n, len(layout.active), len(self.exponents)
         if (m, columns) not in self._rooms:
-            points = STAGES * max(1, min(MOST_AT_ONCE, LARGEST_ROOM // (STAGES * n * (3 * n + 2 * m)))) + 2
+            points = GAUSS_STAGES * max(1, min(MOST_AT_ONCE, LARGEST_ROOM // (GAUSS_STAGES * n * (3 * n + 2 * m)))) + 2
             shapes = (
                 (points,), *[(points, n, n)] * 3, *[(points, m, n)] * 2, (points, 2 * n), (1, n, n), (columns, columns),
                 (n, columns), (n, columns),
@@ -182,7 +182,7 @@ class Variation:
                     t=t0,
                     loop="variation",
                 )
-            inner = t0 + h / substeps * (np.arange(substeps)[:, None] + NODES).ravel()
+            inner = t0 + h / substeps * (np.arange(substeps)[:, None] + GAUSS_NODES).ravel()
             nodes = np.concatenate([[t0], inner, [t1]])
             mass, k, d, phi_q, rate, points = self._linearise(layout, nodes)
             dq, dv = self.dq.copy(), self.dv.copy()

@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _GAUSS = TABLEAUS["gauss3"]
-NODES = np.array(_GAUSS.c)
-STAGES = len(NODES)
+GAUSS_NODES = np.array(_GAUSS.c)
+GAUSS_STAGES = len(GAUSS_NODES)
 _A = np.array(_GAUSS.a)
 _B = np.array(_GAUSS.b)
 
@@ -61,9 +61,10 @@ class Work(NamedTuple):
 def make_work(n: int, m: int, columns: int) -> Work:
     """Room for n coordinates, m constraints and so many variations."""
     f = n - m
+    size = GAUSS_STAGES * 2 * f
     shapes = (
-        *[(n, f)] * 6, (m, m), (m, f), *[(f, f)] * 5, (STAGES, 2 * f, 2 * f), (STAGES * 2 * f, STAGES * 2 * f),
-        (STAGES * 2 * f, columns), (2 * f, columns),
+        *[(n, f)] * 6, (m, m), (m, f), *[(f, f)] * 5, (GAUSS_STAGES, 2 * f, 2 * f), (size, size), (size, columns),
+        (2 * f, columns),
     )  # fmt: skip
     places = np.zeros((m, n)), np.zeros(m, dtype=np.int64), np.zeros(f, dtype=np.int64)
     room: tuple[Any, ...] = (*(np.zeros(shape) for shape in shapes), *places)
@@ -158,16 +159,16 @@ def collocate(generators: Any, h: float, z: Any, system: Any, slopes: Any) -> No
     """One Gauss step of z' = generator z with its matrices at the nodes, (stages, 2f, 2f); changes z (2f, columns)."""
     size, columns = z.shape
     slopes[:, :] = 0.0
-    for i in range(STAGES):
-        for j in range(STAGES):
+    for i in range(GAUSS_STAGES):
+        for j in range(GAUSS_STAGES):
             for r in range(size):
                 for c in range(size):
                     system[size * i + r, size * j + c] = -h * _A[i, j] * generators[i, r, c]
         add_product(slopes[size * i : size * (i + 1)], generators[i], z, 1.0)
-    for i in range(size * STAGES):
+    for i in range(size * GAUSS_STAGES):
         system[i, i] += 1.0
     eliminate(system, slopes)
-    for i in range(STAGES):
+    for i in range(GAUSS_STAGES):
         for r in range(size):
             for c in range(columns):
                 z[r, c] += h * _B[i] * slopes[size * i + r, c]
@@ -218,7 +219,7 @@ def carry(
     -------
     frequency : the highest met, rad/s. divergence : its integral over the step.
     """
-    steps = (len(mass) - 2) // STAGES
+    steps = (len(mass) - 2) // GAUSS_STAGES
     # the choice that is best in the middle serves both ends
     choose(phi_q[len(mass) // 2], scale, work.pivoting, work.dependent, work.independent)
     independent = work.independent
@@ -233,8 +234,8 @@ def carry(
     add_product(z[f:], work.moved.T, dv, 1.0)
     frequency, divergence = 0.0, 0.0
     for s in range(steps):
-        for i in range(STAGES):
-            at = 1 + STAGES * s + i
+        for i in range(GAUSS_STAGES):
+            at = 1 + GAUSS_STAGES * s + i
             found = generator(
                 mass[at], k[at], d[at], mass_rate[at if len(mass_rate) > 1 else 0], phi_q[at], rate[at], work,
                 work.generators[i],

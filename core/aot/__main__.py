@@ -8,11 +8,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ..compiled.library import PLACE, USUAL_PLACE
+from ..compiled.library import LIBRARY_VARIABLE, USUAL_PLACE
 from ..errors import TlismniError
 
 FRESH = {
-    PLACE: "none",
+    LIBRARY_VARIABLE: "none",
     "NUMBA_OPT": "0",
     "OPENBLAS_NUM_THREADS": "1",
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",

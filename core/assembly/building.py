@@ -16,7 +16,7 @@ from ..state.workspace_records import OF_D, OF_KKT, OK, REALS, WANT_ROOM, WORDS,
 from .entries import list_entries, size_of_entries
 from .redundant_reactions import begin_sharing, list_sharing
 from .serials import next_serial, same_numbers
-from .structure_switch import HELD, KINDS, STUCK, STUCK_TWICE, take_structure
+from .structure_switch import HELD, STRUCTURE_KINDS, STUCK, STUCK_TWICE, take_structure
 from .structure_tables import write_structure
 
 
@@ -170,7 +170,7 @@ def _find_rows(workspace: Any, b: Any, active: Any, matrix_row: Any, matrix_col:
         if codes[by[e]] >= HELD:
             matrix_row[replaced[e]] = 0
     for k in range(b.n_contacts):
-        otherwise, kind, implied = 2 if listed[k] != 0 else 0, codes[k] % KINDS, codes[k] // KINDS
+        otherwise, kind, implied = 2 if listed[k] != 0 else 0, codes[k] % STRUCTURE_KINDS, codes[k] // STRUCTURE_KINDS
         matrix_row[rows[k]] = (3 if implied % 2 != 0 else 1) if kind >= HELD else otherwise
         if slides[k] >= 0:
             matrix_row[slides[k]] = (3 if implied // 2 % 2 != 0 else 1) if kind >= STUCK else otherwise

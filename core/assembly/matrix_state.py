@@ -22,7 +22,7 @@ from .partition_building import partition_wanted
 from .serials import same_numbers
 from .structure_switch import CODES
 
-HEAD = 3
+MATRIX_HEAD = 3
 """Words before each matrix."""
 OF_QUERY = 1
 """Number of the matrix for queries."""
@@ -66,7 +66,7 @@ def matrix_words(workspace: Any) -> int:
     count = 2 + workspace.n_contacts + 2 * structure.m_act + structure.n_sharing
     for k in range(4):
         lu = lu_at(_matrix(structure, k))
-        count += HEAD + lu.n + _numbers(lu)
+        count += MATRIX_HEAD + lu.n + _numbers(lu)
     return int(count)
 
 
@@ -103,14 +103,14 @@ def save_matrices(workspace: Any, at: int) -> int:
     at += 8 * sharing
     for k in range(4):
         lu = lu_at(_matrix(structure, k))
-        head, count = ivec(at, HEAD), _numbers(lu)
+        head, count = ivec(at, MATRIX_HEAD), _numbers(lu)
         head[0], head[1], head[2] = _kind(lu), lu.n, count
-        pivots, own = ivec(at + 8 * HEAD, lu.n), ivec(lu.pivots if lu.kind == DENSE else lu.perm_r, lu.n)
+        pivots, own = ivec(at + 8 * MATRIX_HEAD, lu.n), ivec(lu.pivots if lu.kind == DENSE else lu.perm_r, lu.n)
         # the factors for queries are computed anew whenever they are used: of sparse ones the limits of L decide
         forgotten = 0 if k != OF_QUERY else count - (0 if lu.kind == DENSE else min(lu.n, count))
         for i in range(lu.n):
             pivots[i] = i if k == OF_QUERY and lu.kind == DENSE else own[i]
-        at += 8 * (HEAD + lu.n)
+        at += 8 * (MATRIX_HEAD + lu.n)
         numbers, values = vec(at, count), vec(lu.values, count)
         for p in range(count):
             numbers[p] = 0.0 if p < forgotten else values[p]
@@ -163,14 +163,14 @@ def restore_matrices(workspace: Any, at: int, anew: int) -> int:
         rows[i] = reals[i]
     at += 8 * sharing
     for k in range(4):
-        lu, head = lu_at(_matrix(structure, k)), ivec(at, HEAD)
-        left -= HEAD
+        lu, head = lu_at(_matrix(structure, k)), ivec(at, MATRIX_HEAD)
+        left -= MATRIX_HEAD
         if left < 0 or head[1] != lu.n or head[2] < 0 or lu.n > left or head[2] > left - lu.n:
             return UNFIT
-        how = _restore(lu, head[0], head[2], at + 8 * HEAD)
+        how = _restore(lu, head[0], head[2], at + 8 * MATRIX_HEAD)
         if how == UNFIT:
             return UNFIT
-        found, left, at = max(found, how), left - lu.n - head[2], at + 8 * (HEAD + lu.n + head[2])
+        found, left, at = max(found, how), left - lu.n - head[2], at + 8 * (MATRIX_HEAD + lu.n + head[2])
     return found if left == 0 else UNFIT
 
 

@@ -12,7 +12,7 @@ PROBES = 4
 """Pseudo-random motions from which the sizes of rows are taken, beside those that move every two coordinates together
 and against each other: by the digits of their numbers, or the gaps of some of a hundred pairs would hardly move."""
 
-SQUARE, WORK, HEAVIEST, STIFFEST = range(4)
+MEASURED_SQUARE, MEASURED_WORK, MEASURED_HEAVIEST, MEASURED_STIFFEST = range(4)
 MEASURED = 4
 """Of `measure_motion`: the largest square of a rate (1/s^2) and the largest work (J), 0 where there is none; the
 largest mass (kg m^2), and how stiff what holds the masses is (1/s^2)."""
@@ -135,5 +135,5 @@ def measure_motion(workspace: Any, scale: Any, v: Any, later: Any, m_joints: int
         heaviest = _more(heaviest, mass[i] * (scale[i] * scale[i]))
         # each mass with its own speed: a heavy one need not move as fast as the fastest
         kinetic = _more(kinetic, mass[i] * (v[i] * v[i]))
-    found[SQUARE], found[WORK] = square, _larger_number(work, kinetic)
-    found[HEAVIEST], found[STIFFEST] = heaviest, stiffest
+    found[MEASURED_SQUARE], found[MEASURED_WORK] = square, _larger_number(work, kinetic)
+    found[MEASURED_HEAVIEST], found[MEASURED_STIFFEST] = heaviest, stiffest

@@ -29,7 +29,7 @@ from ..linalg.analyze import call_analyze
 from ..linalg.solve import solve_transposed
 from ..rounding import COMPATIBLE, STILL_COMPATIBLE
 from ..state.workspace_records import OK, building_at, structure_at
-from .structure_switch import HELD, KINDS
+from .structure_switch import HELD, STRUCTURE_KINDS
 
 
 @internal
@@ -65,7 +65,7 @@ def list_sharing(
                 count += 1
         for k in range(b.n_contacts if own >= b.m_joints else 0):
             for of in range(3):
-                if codes[k] % KINDS >= HELD + of:
+                if codes[k] % STRUCTURE_KINDS >= HELD + of:
                     if write:
                         sharing[count] = matrix_col[rows[k] if of == 0 else slides[k] + of - 1] - b.n
                     count += 1

@@ -9,7 +9,7 @@ are none that of the masses at the model's speeds.
 
 from dataclasses import dataclass
 
-WORK = 0.1
+SMALL_WORK = 0.1
 """Of the model's energy: work accounts below this are held to what it is worth, others relatively."""
 MOST_TIMES = 40
 """Later times at which it is looked what forces and drivers do."""

@@ -27,7 +27,7 @@ from .assembly import Assembly
 Field = tuple[str, Any, tuple[int, ...]]
 """Name, type and shape."""
 
-STATE = ("memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam")
+STATE_ARRAYS = ("memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam")
 
 
 def state_fields(assembly: Assembly) -> list[Field]:
@@ -38,7 +38,7 @@ def state_fields(assembly: Assembly) -> list[Field]:
         "memory": (max(len(assembly.contacts), 1), MEMORY_SIZE), "inputs": (inputs, INPUT_SIZE),
         "rate": (RATE_SIZE,), "t": (1,), "lam": (m_ext,),
     }  # fmt: skip
-    return [(name, np.float64, shapes.get(name, (n_ext,))) for name in STATE]
+    return [(name, np.float64, shapes.get(name, (n_ext,))) for name in STATE_ARRAYS]
 
 
 def row_length(assembly: Assembly) -> int:

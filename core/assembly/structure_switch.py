@@ -19,9 +19,9 @@ from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
 space its sliding along both tangents."""
-KINDS = 8
-"""A code is one of these, plus KINDS times `implied_rows` of the contact's memory."""
-CODES = KINDS * (OF_NORMAL + OF_FIRST + OF_SECOND + 1)
+STRUCTURE_KINDS = 8
+"""A code is one of these, plus STRUCTURE_KINDS times `implied_rows` of the contact's memory."""
+CODES = STRUCTURE_KINDS * (OF_NORMAL + OF_FIRST + OF_SECOND + 1)
 
 
 def codes_of(
@@ -38,7 +38,7 @@ def codes_of(
     for contacts, code in ((engaged, ENGAGED), (closed, HELD), (first, STUCK), (second, STUCK_TWICE)):
         codes[list(contacts)] = code
     for row in implied:
-        codes[row % count] += KINDS * (OF_NORMAL, OF_FIRST, OF_SECOND)[row // count]
+        codes[row % count] += STRUCTURE_KINDS * (OF_NORMAL, OF_FIRST, OF_SECOND)[row // count]
     return codes
 
 
@@ -48,14 +48,14 @@ Key = tuple[frozenset[int], frozenset[int], frozenset[int], frozenset[int]]
 def key_of(codes: NDArray[np.int64]) -> Key:
     """Contacts closed, engaged (closed or acting), sticking, and implied rows, as `codes_of` takes them."""
     closed, engaged, sticking, twice = (
-        frozenset(int(k) for k in np.flatnonzero(codes % KINDS >= least))
+        frozenset(int(k) for k in np.flatnonzero(codes % STRUCTURE_KINDS >= least))
         for least in (HELD, ENGAGED, STUCK, STUCK_TWICE)
     )
     count = len(codes)
     implied = {
         int(k) + of * count
         for of, bit in enumerate((OF_NORMAL, OF_FIRST, OF_SECOND))
-        for k in np.flatnonzero(codes // KINDS & bit)
+        for k in np.flatnonzero(codes // STRUCTURE_KINDS & bit)
     }
     return closed, engaged, sticking | {k + count for k in twice}, frozenset(implied)
 
@@ -79,7 +79,7 @@ def want(workspace: Any) -> None:
                 wanted[k] = STUCK if seconds[k] < 0 or companion[k] < 0 else STUCK_TWICE
             elif memory[k].slide_mode == AT_LIMIT:
                 wanted[k] = STUCK
-            wanted[k] += KINDS * np.int64(memory[k].implied_rows)
+            wanted[k] += STRUCTURE_KINDS * np.int64(memory[k].implied_rows)
 
 
 @internal

@@ -38,7 +38,7 @@ from .numbers import constraints_are_cheap, given_compliance, level_scale, relea
 from .partition_building import partition_wanted
 from .patterns import FEW, entries_of_few, patterns, shows
 from .slots import MOST_STRUCTURES, Slots
-from .state_fields import STATE, Field, row_length, state_fields
+from .state_fields import STATE_ARRAYS, Field, row_length, state_fields
 from .structure import OF_PARTITION, OF_STRUCTURE, Structure
 from .structure_switch import Key, codes_of
 
@@ -101,7 +101,7 @@ class Workspace:
         n_ext, m_ext, contacts = a.n_extended, a.m + 1, len(a.contacts)
         self.state = np.zeros(1, [*state_fields(a), *also])
         self.state_bytes = self.state.view(np.uint8)  # to copy in one go: numpy copies records field by field
-        arrays: dict[str, NDArray[Any]] = {name: self.state[name][0] for name in STATE}
+        arrays: dict[str, NDArray[Any]] = {name: self.state[name][0] for name in STATE_ARRAYS}
         arrays |= {name: np.zeros(n_ext) for name in (
             "r", "q_star", "v_star", "base_q", "base_v", "base_a", "weight_q", "weight_v", "offset",
         )}  # fmt: skip

@@ -19,7 +19,7 @@ from .needed import numba_module, use_libm
 
 logger = logging.getLogger(__name__)
 
-PLACE = "TLISMNI_LIBRARY"
+LIBRARY_VARIABLE = "TLISMNI_LIBRARY"
 """Environment variable: path of a library; "none": without one."""
 LIBM = "TLISMNI_LIBM"
 """Environment variable: path of a library, of any sources, whose functions of numbers (`sin`, `pow`) code that is
@@ -97,9 +97,9 @@ class Library:
 
 
 def _find() -> tuple[Library | None, str]:
-    """The library of these sources; and, if there is one that cannot be used, why. Raises OSError if the one that PLACE
-    names cannot be loaded."""
-    given = os.environ.get(PLACE)
+    """The library of these sources; and, if there is one that cannot be used, why. Raises OSError if the one that
+    LIBRARY_VARIABLE names cannot be loaded."""
+    given = os.environ.get(LIBRARY_VARIABLE)
     path = USUAL_PLACE if given is None else Path(given)
     if (given or "").lower() == "none" or (given is None and not path.is_file()):
         logger.info("no library of machine code: functions are compiled when they are first used")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..rounding import DIRECTION_RANK
 from .directions import farthest_directions, farthest_size, independent_directions, independent_size
 from .lcp import NoComplementarySolution
-from .planar_contacts import MANY, NONE, STICKS, VECTORS, Cones, solve_cones
+from .planar_contacts import BELOW_LIMITS, MANY, NONE, PLANAR_VECTORS, Cones, solve_cones
 
 __all__ = [
     "MANY",
@@ -98,8 +98,8 @@ def solve_contacts(
     status = solve_cones(cones.record)
     if status == NONE:
         raise NoComplementarySolution("neither pivoting nor Newton's method find forces of the contacts")
-    normal, tangential, normal_motion, tangential_motion = (cones.arrays[name] for name in VECTORS[-4:])
-    return ContactSolution(normal, tangential, normal_motion, tangential_motion, status == STICKS)
+    normal, tangential, normal_motion, tangential_motion = (cones.arrays[name] for name in PLANAR_VECTORS[-4:])
+    return ContactSolution(normal, tangential, normal_motion, tangential_motion, status == BELOW_LIMITS)
 
 
 def independent(

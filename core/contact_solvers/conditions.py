@@ -14,10 +14,10 @@ from ..compiled.views import ivec, mat, vec
 from ..linalg.small import add, call_least_norm, dot, least_norm_size, solve_square
 from ..rounding import CONDITIONS_RANK
 
-NONE, SOLVED, STICKS = range(3)
+NONE, SOLVED, BELOW_LIMITS = range(3)
 """What solvers return: there are no forces; there are; there are, and all friction was found below its limit at once,
 shared in proportion to what the contacts allow."""
-PRESSING, STUCK, RIGHT, LEFT = 1, 2, 4, 8
+PRESSES, STICKING, RIGHT, LEFT = 1, 2, 4, 8
 """What a contact does: bits of its state. The last two tell to which side the friction of one that does not stick
 goes."""
 
@@ -85,14 +85,14 @@ def does(cn: Any, mu: Any, normal: Any, friction: Any, eps: float, state: Any, r
     w_n, w_t = vec(work, n), vec(work + 8 * n, n)
     move(cn, normal, friction, eps, w_n, w_t)
     for i in range(n):
-        state[i] = PRESSING if (normal[i] - base[i]) * nn[i, i] > w_n[i] else 0
+        state[i] = PRESSES if (normal[i] - base[i]) * nn[i, i] > w_n[i] else 0
         ratio[i] = -direction[i] * mu[i]
         if mu[i] > 0.0 and direction[i] == 0.0:
             proposed = friction[i] - w_t[i] / tangential_mass(cn, i)
             ratio[i] = mu[i] * np.sign(proposed)
             if abs(proposed) < mu[i] * max(normal[i], base[i]):
                 ratio[i] = 0.0
-                state[i] |= STUCK
+                state[i] |= STICKING
         if ratio[i] != 0.0:
             state[i] |= RIGHT if ratio[i] > 0.0 else LEFT
 
@@ -131,10 +131,10 @@ def solve_for(cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: 
     work += 32 * n
     move(cn, normal, friction, eps, w_n, w_t)
     for i in range(n):
-        if state[i] & PRESSING:
+        if state[i] & PRESSES:
             presses[count] = i
             count += 1
-        if state[i] & STUCK:
+        if state[i] & STICKING:
             sticks[held] = i
             held += 1
     some, stuck, size = presses[:count], sticks[:held], count + held
@@ -152,5 +152,5 @@ def solve_for(cn: Any, state: Any, ratio: Any, normal: Any, friction: Any, eps: 
     for k in range(held):
         friction[stuck[k]] += change[count + k, 0]
     for i in range(n):
-        if not state[i] & STUCK:
+        if not state[i] & STICKING:
             friction[i] = ratio[i] * normal[i]

@@ -18,7 +18,7 @@ from ..linalg.small import solve_square
 from ..rounding import FRICTION_FOLLOWED
 from .projections import residual_of_cones
 
-FIRST, LAST = 0.1, 1e-8
+FIRST_COMPLIANCE, LAST_COMPLIANCE = 0.1, 1e-8
 """Part of its own inverse mass by which each contact gives way, at first and at last."""
 FIRST_LENGTH, MOST_LENGTH, LEAST_LENGTH = 0.02, 0.2, 1e-10
 """Of a step along the path, in which forces count in parts of the largest one up to there."""
@@ -104,8 +104,8 @@ def _turn(m: int, size: float, bordered: Any, border: Any, right: Any, way_on: A
 def follow_cones(
     n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, first: float, longest: float, work: int
 ) -> bool:
-    """Forces p (3 n,), as of `solve_friction_cones`, of contacts that give way by LAST, from those that give way by
-    `first`, which p is. False if the path to them is not found.
+    """Forces p (3 n,), as of `solve_friction_cones`, of contacts that give way by LAST_COMPLIANCE, from those that give
+    way by `first`, which p is. False if the path to them is not found.
 
     longest : of its steps.
     """
@@ -159,7 +159,7 @@ def follow_cones(
                 return False
             continue
         log = there
-        if log <= math.log(LAST):
+        if log <= math.log(LAST_COMPLIANCE):
             return True
         for i in range(m):
             size = max(size, abs(p[i]))

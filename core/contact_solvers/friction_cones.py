@@ -31,12 +31,12 @@ from ..rounding import (
     FRICTION_ROUGH,
     FRICTION_SOLVED,
 )
-from .continuation import EARLIER, FINER, FIRST, MOST_LENGTH, TIMES, follow_cones, giving_way_size
+from .continuation import EARLIER, FINER, FIRST_COMPLIANCE, MOST_LENGTH, TIMES, follow_cones, giving_way_size
 from .patch_friction import solve_ball
 from .projections import motion_left, motion_of, residual_of_cones
 from .single_contact import solve_single_contact
 
-FAILED, FOUND = 0, 1
+CONES_FAILED, CONES_SOLVED = 0, 1
 SWEEPS, MOST_SWEEPS = 20, 5000
 NEWTON, HALVINGS = 60, 8
 FOLLOWED_AFTER = 60
@@ -165,7 +165,7 @@ def _give_way(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int
 ) -> bool:
     """True if p, the forces, are found as those of contacts that give way less and less."""
-    m, first, longest = 3 * n, FIRST, MOST_LENGTH
+    m, first, longest = 3 * n, FIRST_COMPLIANCE, MOST_LENGTH
     soft = mat(work, m, m)
     for _ in range(TIMES):
         for i in range(m):
@@ -193,7 +193,7 @@ def _give_way(
 def solve_friction_cones(
     least_norm: int, n: int, a: Any, b: Any, mu: Any, base: Any, known: Any, way: Any, p: Any, work: int, most: int
 ) -> int:
-    """Forces p (3 n,) of n contacts: normals, first and second tangents; FOUND or FAILED.
+    """Forces p (3 n,) of n contacts: normals, first and second tangents; CONES_SOLVED or CONES_FAILED.
 
     Parameters
     ----------
@@ -219,9 +219,9 @@ def solve_friction_cones(
             found, change, largest = sweep_over_cones(n, a, b, mu, base, known, way, p, part)
             sweeps += 1
             if not found:
-                return FAILED
+                return CONES_FAILED
             if alone or change <= FRICTION_ENOUGH * largest:
-                return FOUND
+                return CONES_SOLVED
         for i in range(3 * n):
             kept[i] = p[i]
         largest = 0.0
@@ -234,15 +234,15 @@ def solve_friction_cones(
             p[i] = max(p[i], base[i])
         near = left <= FRICTION_NEAR * largest or (left <= FRICTION_GOOD * largest and left > 0.5 * before)
         if near and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_MOTION:
-            return FOUND
+            return CONES_SOLVED
         before = left
         if not followed and sweeps >= FOLLOWED_AFTER:
             followed = True
             if _give_way(least_norm, n, a, b, mu, base, known, way, p, work):
-                return FOUND
+                return CONES_SOLVED
         for i in range(3 * n):
             p[i] = kept[i]
         # sweeps that go round in circles come to rest with smaller steps
         wait, part = 2 * wait, max(0.5 * part, LEAST_PART)
     rough = change <= FRICTION_ROUGH * largest
-    return FOUND if rough and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else FAILED
+    return CONES_SOLVED if rough and motion_left(n, a, b, mu, base, known, way, p) <= FRICTION_ROUGH else CONES_FAILED

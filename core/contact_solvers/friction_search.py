@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .friction_problem import FrictionProblem, Places, Vector
-from .least_friction_forces import MOVED, least_forces
+from .least_friction_forces import LIMIT_CHANGE, least_forces
 from .proximal_point import less_friction, proximal_point
 from .semismooth_newton import newton
 from .splitting import Splitting
@@ -43,7 +43,7 @@ class Search:
             self._take(forces, self.problem.residual(forces), 0)
             self._newton(newton, forces)
             moved = float(np.linalg.norm(self.best - forces))
-            self.limit = self.least <= self.tolerance and moved <= MOVED * float(np.linalg.norm(forces))
+            self.limit = self.least <= self.tolerance and moved <= LIMIT_CHANGE * float(np.linalg.norm(forces))
 
     def run(self) -> None:
         """All contacts at once by what is quick, then each island that is not solved by itself."""

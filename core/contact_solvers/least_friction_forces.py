@@ -20,7 +20,7 @@ where a solution is not found; and the factor above which the path ends."""
 SOLVED, ENOUGH, ROUGHLY, ITERATIONS = 1e-12, 1e-11, 1e-3, 500
 """Residual to which each solution is taken, and with which it is; and what the first-order method goes to before the
 first, in so many iterations at most."""
-MOVED = 1e-6
+LIMIT_CHANGE = 1e-6
 """Change of the forces, in parts of them, by which the exact solution may differ from the limit."""
 
 

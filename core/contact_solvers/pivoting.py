@@ -12,7 +12,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..linalg.small import dot
 from ..rounding import BEYOND_LIMIT, NO_FRICTION, STICKING_MOVES, STICKING_RANK
-from .conditions import NONE, SOLVED, STICKS
+from .conditions import BELOW_LIMITS, NONE, SOLVED
 from .lcp import call_find, lcp_size
 from .sticking_friction import hold_tangents, share, sticking_size
 
@@ -26,7 +26,7 @@ def pivoting_size(n: int) -> int:
 
 @internal
 def by_pivoting(cn: Any, mu: Any, work: int) -> int:
-    """The solution by Lemke's method: NONE, SOLVED or STICKS."""
+    """The solution by Lemke's method: NONE, SOLVED or BELOW_LIMITS."""
     n = cn.n
     nn, tn, sliding = mat(work, n, n), mat(work + 8 * n * n, n, n), vec(work + 16 * n * n, n)
     work += 8 * (2 * n * n + n)
@@ -49,7 +49,7 @@ def by_pivoting(cn: Any, mu: Any, work: int) -> int:
         b_n[i], b_t[i] = vec(cn.b_n, n)[i] + dot(nn[i], base), vec(cn.b_t, n)[i] + dot(tn[i], base)
     status = SOLVED
     if count > 0 and _all_stick(cn, nn, tn, b_n, b_t, mu, free[:count], normal, work):
-        status = STICKS
+        status = BELOW_LIMITS
     elif count > 0:
         if not _with_limits(cn, nn, tn, b_n, b_t, mu, free[:count], normal, work):
             return NONE

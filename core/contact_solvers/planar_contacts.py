@@ -14,21 +14,21 @@ from ..compiled.records import ArrayRecord
 from ..compiled.views import mat, vec
 from ..linalg.small import LEAST_NORM_SIGNATURE, least_norm
 from ..rounding import IMMOVABLE
-from .conditions import NONE, SOLVED, STICKS
+from .conditions import BELOW_LIMITS, NONE, SOLVED
 from .lcp import FIND_SIGNATURE, find_complementary
 from .pivoting import by_pivoting, pivoting_size
 from .regularization import by_limit, many_size
 
 __all__ = [
+    "BELOW_LIMITS",
     "CONES",
     "CONES_SIGNATURE",
     "CONES_TYPE",
     "IMMOVABLE",
     "MANY",
     "NONE",
+    "PLANAR_VECTORS",
     "SOLVED",
-    "STICKS",
-    "VECTORS",
     "Cones",
     "call_cones",
     "solve_cones",
@@ -38,7 +38,7 @@ __all__ = [
 MANY = 8
 """Contacts; the forces of more are found as the limit of those that give way a little (`regularization.py`)."""
 
-VECTORS = (
+PLANAR_VECTORS = (
     "b_n", "b_t",                          # motion without contact forces; b_n > 0: the contact separates
     "mu",                                  # coefficients of friction; 0: none
     "direction",                           # +-1 where it slides and friction is known, 0: friction decides
@@ -57,7 +57,7 @@ CONES = np.dtype(
             *CALLED,                                # addresses of these functions
             "n",                                    # contacts
             "nn", "nt", "tt",                       # (n, n) inverse effective masses, 1/kg
-            *VECTORS,
+            *PLANAR_VECTORS,
             "work",                                 # (work_size(n),) scratch
         )
     ]
@@ -68,7 +68,7 @@ call_way = caller(WAY_SIGNATURE)
 """call_way(address, cn, mu, work): one of the two ways to solutions."""
 CONES_SIGNATURE = types.int64(CONES_TYPE)
 call_cones = caller(CONES_SIGNATURE)
-"""call_cones(address of `solve_cones`, cn): NONE, SOLVED or STICKS."""
+"""call_cones(address of `solve_cones`, cn): NONE, SOLVED or BELOW_LIMITS."""
 
 
 def work_size(n: int) -> int:
@@ -96,13 +96,13 @@ class Cones(ArrayRecord):
     def __init__(self, most: int) -> None:
         sizes = {"n": most, **addresses()}
         shapes: dict[str, tuple[int, ...]] = dict.fromkeys(("nn", "nt", "tt"), (most, most))
-        shapes |= dict.fromkeys(VECTORS, (most,)) | {"work": (work_size(most),)}
+        shapes |= dict.fromkeys(PLANAR_VECTORS, (most,)) | {"work": (work_size(most),)}
         super().__init__(CONES, {name: np.zeros(shape) for name, shape in shapes.items()}, sizes)
 
 
 @compiled
 def solve_cones(cn: Any) -> int:
-    """Forces of the contacts of the record `cn`, and the motion with them: NONE, SOLVED or STICKS.
+    """Forces of the contacts of the record `cn`, and the motion with them: NONE, SOLVED or BELOW_LIMITS.
 
     The arrays of what is given stay as they are; with NONE, those of what is found mean nothing.
     """

@@ -18,7 +18,19 @@ import numpy as np
 from ..compiled.jit import inlined, internal
 from ..compiled.views import imat, ivec, vec
 from ..rounding import CONES_CONVERGED, CONES_GOOD, CONES_NEAR, TOGETHER
-from .conditions import NONE, PRESSING, SOLVED, STICKS, STUCK, does, largest_motion, left, move, solve_for, solving_size
+from .conditions import (
+    BELOW_LIMITS,
+    NONE,
+    PRESSES,
+    SOLVED,
+    STICKING,
+    does,
+    largest_motion,
+    left,
+    move,
+    solve_for,
+    solving_size,
+)
 from .sweeps import sweep
 
 FIRST, LAST = 0.1, 1e-8
@@ -38,7 +50,8 @@ def many_size(n: int) -> int:
 
 @internal
 def by_limit(cn: Any, mu: Any, work: int) -> int:
-    """The solution as the limit of those with contacts that give way: SOLVED or STICKS, NONE if the path to it ends."""
+    """The solution as the limit of those with contacts that give way: SOLVED or BELOW_LIMITS; NONE if the path to it
+    ends."""
     n, size, some = cn.n, largest_motion(cn), False
     if not _solve(cn, mu, size, work):
         return NONE
@@ -49,7 +62,7 @@ def by_limit(cn: Any, mu: Any, work: int) -> int:
             some = True
             if not abs(w_t[i]) <= TOGETHER * size:
                 return SOLVED
-    return STICKS if some else SOLVED
+    return BELOW_LIMITS if some else SOLVED
 
 
 @inlined
@@ -128,7 +141,7 @@ def _newton(cn: Any, mu: Any, size: float, best: Any, best_friction: Any, eps: f
         else:
             for i in range(n):
                 seen[met, i] = state[i]
-                normal[i] = 0.0 if state[i] & PRESSING else base[i]
+                normal[i] = 0.0 if state[i] & PRESSES else base[i]
                 friction[i] = ratio[i] * normal[i]
             met += 1
             solve_for(cn, state, ratio, normal, friction, eps, work + 16 * n)
@@ -159,12 +172,12 @@ def _direct(cn: Any, mu: Any, normal: Any, friction: Any, work: int) -> None:
     state, ratio = ivec(work, n), vec(work + 8 * n, n)
     does(cn, mu, normal, friction, 0.0, state, ratio, work + 16 * n)
     for i in range(n):
-        if not state[i] & PRESSING:
+        if not state[i] & PRESSES:
             normal[i] = base[i]
-        if not state[i] & STUCK:
+        if not state[i] & STICKING:
             friction[i] = ratio[i] * normal[i]
     solve_for(cn, state, ratio, normal, friction, 0.0, work + 16 * n)
     for i in range(n):
         normal[i] = max(normal[i], base[i])
-        if not state[i] & STUCK:
+        if not state[i] & STICKING:
             friction[i] = ratio[i] * normal[i]

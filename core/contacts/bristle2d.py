@@ -17,7 +17,7 @@ from ..state.modes import ACTIVE, memories_at
 from .geometry_kinds import DISKS, PLANE, are
 from .moving_surface import put_in, surface_speed
 from .normal2d import act, evaluate_law
-from .sliding2d import FRICTION, add_friction, slide_on_disk, slide_on_half_plane
+from .sliding2d import FRICTION_AT, add_friction, slide_on_disk, slide_on_half_plane
 
 
 @internal
@@ -33,7 +33,7 @@ def _bristles(
     normal, normal_d, normal_dd, _, _ = evaluate_law(b, e, extra[0], g, along(g_gradient, v, coord))
     speed, _ = surface_speed(b, e, t)
     z, rate = v[coord[w]], along(gradient, v, coord) - speed
-    s0, last = par[FRICTION], b.npar - 1
+    s0, last = par[FRICTION_AT], b.npar - 1
     if job == ENERGY:
         vec(b.energy, 3)[2] += 0.5 * s0 * z * z
     if not normal > 0.0:
@@ -41,10 +41,10 @@ def _bristles(
         return 0.0, 0.0, 0.0
     # bristles that would slip at less slip and rub in proportion to the normal force: their equation has no limit at
     # normal force zero, where a contact ends
-    least = par[last - 1] * s0 / par[FRICTION + 3]
+    least = par[last - 1] * s0 / par[FRICTION_AT + 3]
     zd, zd_z, zd_v, zd_n, force, f_z, f_v, f_n = lugre_formula(
-        z, rate, max(normal, least), s0, par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
-        par[last],
+        z, rate, max(normal, least), s0, par[FRICTION_AT + 1], par[FRICTION_AT + 2], par[FRICTION_AT + 3],
+        par[FRICTION_AT + 4], par[last],
     )  # fmt: skip
     if normal < least:
         # error control would find no end of a jump at zero

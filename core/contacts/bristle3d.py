@@ -29,14 +29,14 @@ from ..laws.friction.lugre import lugre_slip
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
 from ..state.modes import ACTIVE, memories_at
 from .cable_contact3d import gap_of_cable
-from .cable_foot3d import FOOT_ROWS, WIDTH
+from .cable_foot3d import FOOT_ROWS, FOOT_WIDTH
 from .geometry_kinds import CABLE_IN_SPACE, SPHERE, are
-from .mesh_nearest3d import OPEN, hold_on_mesh
+from .mesh_nearest3d import OPEN_SURFACE, hold_on_mesh
 from .moving_point3d import MOVES, ON_MESH, POINT_OF_CABLE, on_plane
 from .normal2d import act, evaluate_law, is_sleeping
-from .normal3d import KIND, SIZE, gap_of, hold, pair_of
+from .normal3d import GAP_KIND, PAIR_SIZE, gap_of, hold, pair_of
 from .normal_rate3d import turn_normal
-from .sliding2d import FRICTION
+from .sliding2d import FRICTION_AT
 from .slip3d import add_slip, slip_of_batch, speed_rate_of_batch
 from .surface3d import pass_surface_in, put_in_along
 from .tangent3d import NORMAL, ROWS, U, W, column, product_with, put
@@ -44,7 +44,7 @@ from .turning3d import add_torque_tangent, resists_turning, turning_arms
 
 BENT = 3
 """Components of a deflection, at most."""
-BRISTLE_INDICES = OPEN + 1
+BRISTLE_INDICES = OPEN_SURFACE + 1
 """Columns of `extra`: those of the shape with most of them."""
 ZERO = (0.0, 0.0, 0.0)
 
@@ -74,13 +74,13 @@ def _bend(
         return
     found, normal_d, normal_dd, _, _ = evaluate_law(b, e, k, g, rate_along(gradient, v, coord))
     normal, last = max(found, 0.0), b.npar - 1
-    s0, s1, s2 = par[FRICTION], par[FRICTION + 1], par[FRICTION + 2]
+    s0, s1, s2 = par[FRICTION_AT], par[FRICTION_AT + 1], par[FRICTION_AT + 2]
     # below the least normal force bristles slip and rub in proportion to it, as in the plane; a damper that pulls
     # leaves them as they are
-    least = par[last - 1] * s0 / par[FRICTION + 3]
+    least = par[last - 1] * s0 / par[FRICTION_AT + 3]
     part = min(normal / least, 1.0)
     h, h_speed, h_normal = lugre_slip(
-        speed, max(normal, least), s0, par[FRICTION + 3], par[FRICTION + 4], par[last]
+        speed, max(normal, least), s0, par[FRICTION_AT + 3], par[FRICTION_AT + 4], par[last]
     )  # fmt: skip
     p, pd = four(q, coord, 3, held[0]), four(v, coord, 3, 0.0)
     # X_l, and the columns of its turning
@@ -193,7 +193,7 @@ def _act_all(job: int, t: float, b: Any, width: int, rows: int) -> None:
         e = shown_at(b, i)
         if is_sleeping(b, e):
             continue
-        kind = int(par[e, KIND])
+        kind = int(par[e, GAP_KIND])
         if kind == POINT_OF_CABLE:
             _, g = gap_of_cable(b, e, held, moves, gradient, hessian, packed)
         else:
@@ -205,12 +205,12 @@ def _act_all(job: int, t: float, b: Any, width: int, rows: int) -> None:
 
 @internal
 def bristle_sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    _act_all(job, t, b, SIZE, MOVES)
+    _act_all(job, t, b, PAIR_SIZE, MOVES)
 
 
 @internal
 def bristle_cable3d_kernel(job: int, t: float, b: Any) -> None:
-    _act_all(job, t, b, WIDTH, FOOT_ROWS)
+    _act_all(job, t, b, FOOT_WIDTH, FOOT_ROWS)
 
 
 are(SPHERE, bristle_sphere3d_kernel)

@@ -14,51 +14,51 @@ from ..compiled.views import imat, mat, vec
 from ..elements.measure3d import POINT_A
 from ..model.rotation3d import constant, four, plus, three, turned, turning
 from .cubic import beyond, find_on_cable
-from .moving_point3d import ON_CABLE, SIZE
-from .normal3d import KIND, pair_of
+from .moving_point3d import ON_CABLE, PAIR_SIZE
+from .normal3d import GAP_KIND, pair_of
 from .turning3d import ROLLING, TURNING_NUMBERS
 
-VECTORS = 4
-CABLE = 7
+FOOT_VECTORS = 4
+CABLE_AT = 7
 """Local coordinate where the twelve of the cable's element begin; those of the first body come before."""
-WIDTH = CABLE + 3 * VECTORS
-WIDE_PACKED = WIDTH * (WIDTH + 1) // 2
+FOOT_WIDTH = CABLE_AT + 3 * FOOT_VECTORS
+WIDE_PACKED = FOOT_WIDTH * (FOOT_WIDTH + 1) // 2
 WEIGHTS = ROLLING + TURNING_NUMBERS
 """Column of the parameters with the weights of a point that stays where it is on the cable, (4,)."""
-LENGTH = WEIGHTS + VECTORS
+FOOT_LENGTH = WEIGHTS + FOOT_VECTORS
 """That of an element's length."""
 PIECE, PIECES = 7, 8
 """Columns of `extra`: number of the element, and how many the cable has."""
 WAY, AT = 0, 1
 """Rows of the matrix of moves: x_q; and w, w', p', p'' and whether the foot moves."""
-SLOPE, FIRST, SECOND, MOVES_ON = 4, 8, 11, 14
+SLOPE, FIRST_SLOPE, SECOND_SLOPE, MOVES_ON = 4, 8, 11, 14
 FOOT_ROWS = 2
 
-OWN = np.arange(SIZE)
+OWN_COORDINATES = np.arange(PAIR_SIZE)
 """Local coordinates of the pair as it stands by itself."""
 
 
 @internal
 def hold_on_cable(b: Any, e: int, held: Any, moves: Any) -> int:
     """The pair of markers of element e, the first of a contact with a cable, to held, and how its point is made of the
-    nodes and moves, to moves (FOOT_ROWS, WIDTH). Returns the element that the point is on."""
+    nodes and moves, to moves (FOOT_ROWS, FOOT_WIDTH). Returns the element that the point is on."""
     pair, par = pair_of(b, e), mat(b.par, b.count, b.npar)[e]
     for i in range(len(pair)):
         held[i] = pair[i]
     moves[:, :] = 0.0
-    if int(par[KIND]) != ON_CABLE:
-        for k in range(VECTORS):
+    if int(par[GAP_KIND]) != ON_CABLE:
+        for k in range(FOOT_VECTORS):
             moves[AT, k] = par[WEIGHTS + k]
         return e
-    coord, extra, q = imat(b.coord, b.count, WIDTH), imat(b.extra, b.count, b.nextra), vec(b.q, b.n_extended)
+    coord, extra, q = imat(b.coord, b.count, FOOT_WIDTH), imat(b.extra, b.count, b.nextra), vec(b.q, b.n_extended)
     p = four(q, coord[e], 3, held[0])
     centre = plus(three(q, coord[e], 0), turned(turning(p, constant(held, POINT_A)), p))
-    c, place, length = np.empty((4, 3)), np.empty(3), par[LENGTH]
+    c, place, length = np.empty((4, 3)), np.empty(3), par[FOOT_LENGTH]
     place[0], place[1], place[2] = centre
-    piece, x = find_on_cable(q, coord, e, extra[e, PIECES], CABLE, length, place, c)
+    piece, x = find_on_cable(q, coord, e, extra[e, PIECES], CABLE_AT, length, place, c)
     for k in range(3):
-        moves[AT, FIRST + k] = c[1, k] + x * (2.0 * c[2, k] + 3.0 * x * c[3, k])
-        moves[AT, SECOND + k] = 2.0 * c[2, k] + 6.0 * x * c[3, k]
+        moves[AT, FIRST_SLOPE + k] = c[1, k] + x * (2.0 * c[2, k] + 3.0 * x * c[3, k])
+        moves[AT, SECOND_SLOPE + k] = 2.0 * c[2, k] + 6.0 * x * c[3, k]
     _weigh(x, length, moves)
     on = beyond(c, place, x)
     before = extra[piece, PIECE] == 0 and x <= 0.0 and on < 0.0
@@ -79,13 +79,13 @@ def _weigh(x: float, length: float, moves: Any) -> None:
 @internal
 def gather(x: Any, coord: Any, moves: Any, to: Any) -> None:
     """What the vector x is of the pair as it stands by itself: to (14,)."""
-    for j in range(CABLE):
+    for j in range(CABLE_AT):
         to[j] = x[coord[j]]
     for c in range(3):
-        to[CABLE + c] = 0.0
-        for k in range(VECTORS):
-            to[CABLE + c] += moves[AT, k] * x[coord[CABLE + 3 * k + c]]
-    for j in range(CABLE + 3, SIZE):
+        to[CABLE_AT + c] = 0.0
+        for k in range(FOOT_VECTORS):
+            to[CABLE_AT + c] += moves[AT, k] * x[coord[CABLE_AT + 3 * k + c]]
+    for j in range(CABLE_AT + 3, PAIR_SIZE):
         to[j] = 0.0
 
 
@@ -93,8 +93,8 @@ def gather(x: Any, coord: Any, moves: Any, to: Any) -> None:
 def slope_of(x: Any, coord: Any, moves: Any) -> Any:
     """How p', made of the vectors in x, is at the point."""
     found = (0.0, 0.0, 0.0)
-    for k in range(VECTORS):
-        w, at = moves[AT, SLOPE + k], CABLE + 3 * k
+    for k in range(FOOT_VECTORS):
+        w, at = moves[AT, SLOPE + k], CABLE_AT + 3 * k
         found = (found[0] + w * x[coord[at]], found[1] + w * x[coord[at + 1]], found[2] + w * x[coord[at + 2]])
     return found
 
@@ -102,38 +102,40 @@ def slope_of(x: Any, coord: Any, moves: Any) -> Any:
 @inlined
 def source(j: int) -> int:
     """The coordinate of the pair that local coordinate j moves."""
-    return j if j < CABLE else CABLE + (j - CABLE) % 3
+    return j if j < CABLE_AT else CABLE_AT + (j - CABLE_AT) % 3
 
 
 @inlined
 def share(j: int, moves: Any) -> float:
     """By how much."""
-    return 1.0 if j < CABLE else moves[AT, (j - CABLE) // 3]
+    return 1.0 if j < CABLE_AT else moves[AT, (j - CABLE_AT) // 3]
 
 
 @internal
 def spread_gap(own_gradient: Any, own_hessian: Any, moves: Any, gradient: Any, hessian: Any, packed: Any) -> None:
-    """Gradient (WIDTH,), Hessian and its upper triangle of a gap, from those of the pair; fills in how the foot
+    """Gradient (FOOT_WIDTH,), Hessian and its upper triangle of a gap, from those of the pair; fills in how the foot
     moves: H = T^T H T - F_q F_q^T/F_x."""
-    for j in range(WIDTH):
+    for j in range(FOOT_WIDTH):
         gradient[j] = share(j, moves) * own_gradient[source(j)]
     bends = 0.0
     if moves[AT, MOVES_ON] > 0.0:
         for c in range(3):
-            bends += own_gradient[CABLE + c] * moves[AT, SECOND + c]
+            bends += own_gradient[CABLE_AT + c] * moves[AT, SECOND_SLOPE + c]
             for d in range(3):
-                bends += moves[AT, FIRST + c] * own_hessian[CABLE + c, CABLE + d] * moves[AT, FIRST + d]
-        for j in range(WIDTH):
+                bends += (
+                    moves[AT, FIRST_SLOPE + c] * own_hessian[CABLE_AT + c, CABLE_AT + d] * moves[AT, FIRST_SLOPE + d]
+                )
+        for j in range(FOOT_WIDTH):
             turns = 0.0
             for c in range(3):
-                turns += own_hessian[source(j), CABLE + c] * moves[AT, FIRST + c]
+                turns += own_hessian[source(j), CABLE_AT + c] * moves[AT, FIRST_SLOPE + c]
             turns *= share(j, moves)
-            if j >= CABLE:
-                turns += moves[AT, SLOPE + (j - CABLE) // 3] * own_gradient[source(j)]
+            if j >= CABLE_AT:
+                turns += moves[AT, SLOPE + (j - CABLE_AT) // 3] * own_gradient[source(j)]
             moves[WAY, j] = -turns / bends
     k = 0
-    for i in range(WIDTH):
-        for j in range(WIDTH):
+    for i in range(FOOT_WIDTH):
+        for j in range(FOOT_WIDTH):
             hessian[i, j] = share(i, moves) * own_hessian[source(i), source(j)] * share(j, moves)
             hessian[i, j] -= bends * moves[WAY, i] * moves[WAY, j]
             if j >= i:

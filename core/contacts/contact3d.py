@@ -21,10 +21,10 @@ from .element import ContactElement
 from .friction3d import rubbing_sphere3d_kernel
 from .frictionless3d import sphere3d_kernel
 from .moving_point3d import HOLLOW, ON_MESH, POINT_OF_CABLE, SEGMENTS, SUPPORT
-from .normal3d import SIZE
+from .normal3d import PAIR_SIZE
 from .pair_table import Make, no_pair, pair, touching
 from .support3d import SUPPORT_NUMBERS
-from .surface3d import FIRST, SECOND
+from .surface3d import FIRST_ATTITUDE, SECOND_ATTITUDE
 
 _ALONG, _IN_SPACE = ("bristle_x", "bristle_y"), ("bristle_x", "bristle_y", "bristle_z")
 BRISTLES = {
@@ -72,7 +72,7 @@ class Contact3D(ContactElement):
     gripping_kernel: ClassVar[Any] = gripping_sphere3d_kernel
     bristle_kernel: ClassVar[Any] = bristle_sphere3d_kernel
     kind: ClassVar[int]
-    width: ClassVar[int] = SIZE
+    width: ClassVar[int] = PAIR_SIZE
 
     turning: TurningFriction | None = None
     """What resists rolling and spinning; left out: nothing."""
@@ -129,7 +129,7 @@ class Contact3D(ContactElement):
         given = np.array(self.surface_direction, dtype=np.float64)
         x, y, z = cast(Marker3D, self.markers()[number]).axes() @ (given / np.linalg.norm(given))
         # what moves on the second shape moves the other way past the first one
-        return (1.0, FIRST, (x, y, z)) if number == 0 else (-1.0, SECOND, (x, y, z))
+        return (1.0, FIRST_ATTITUDE, (x, y, z)) if number == 0 else (-1.0, SECOND_ATTITUDE, (x, y, z))
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:
         super().check_in(bodies)

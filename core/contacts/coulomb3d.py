@@ -33,9 +33,9 @@ from .frame3d import FRAME_ROWS, T1, T2, farthest_axis, tangents
 from .geometry_kinds import SPHERE, are
 from .moving_point3d import MOVES, moves_on
 from .normal2d import act, idle
-from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
+from .normal3d import GAP_KIND, PACKED, PAIR_SIZE, gap_of, hold, pair_of
 from .patch3d import STILL_SPEED, creep_size, direction, turn_of_direction
-from .sliding2d import FRICTION
+from .sliding2d import FRICTION_AT
 from .slip3d import add_slip, slip_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres, tangents_in_motion
 from .surface3d import pass_surface, pass_surface_in, put_in_along
@@ -120,7 +120,7 @@ def _says_of_tangents(par: Any, axis: int) -> float:
 def grip_spheres(b: Any, t: float, e: int) -> None:
     """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
     par, extra, coord = (
-        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
+        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, PAIR_SIZE)[e]
     )  # fmt: skip
     memory, row, pair = memories_at(b.memory, b.n_memory)[extra[0]], imat(b.row, b.count, 3)[e], pair_of(b, e)
     motion, _ = press_spheres(b, e)
@@ -128,7 +128,7 @@ def grip_spheres(b: Any, t: float, e: int) -> None:
     u, u_rate = pass_surface(b, e, t, coord, pair, slip[0], slip[1])
     axis, angle = int(memory.tangent_axis), memory.tangent_angle
     if not closed or axis == 0:
-        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
+        axis, angle = farthest_axis(b, coord, pair, int(par[GAP_KIND]), n), 0.0
     t1, t2, t1_rate, t2_rate = tangents_in_motion(b, coord, pair, axis, angle, motion)
     x, y, state, z, z_rate = dot(u, t1), dot(u, t2), _state(par, memory, closed), 0.0, 0.0
     if par[FRICTION_RADIUS] > 0.0:
@@ -146,7 +146,7 @@ def grip_spheres(b: Any, t: float, e: int) -> None:
     pull_spheres(b, coord, motion, slip, pull)
     if resists_turning(par):
         m, _ = turning_arms(b, par, coord, pair, n)
-        m = plus(m, times(par[FRICTION] * par[FRICTION_RADIUS] * (spins if state[0] else creeps), n))
+        m = plus(m, times(par[FRICTION_AT] * par[FRICTION_RADIUS] * (spins if state[0] else creeps), n))
         add_torque(b, coord, pair, times(vec(b.lam, b.m_extended)[row[0]], m))
 
 
@@ -165,7 +165,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
     u, more, surface = pass_surface_in(b, e, t, coord, pair, u, work)
     axis, angle = int(memory.tangent_axis), memory.tangent_angle
     if not closed or axis == 0:
-        axis, angle = farthest_axis(b, coord, pair, int(par[KIND]), n), 0.0
+        axis, angle = farthest_axis(b, coord, pair, int(par[GAP_KIND]), n), 0.0
     t1, t2 = tangents(b, coord, pair, axis, angle, n, work)
     x, y, z, radius = dot(u, t1), dot(u, t2), 0.0, par[FRICTION_RADIUS]
     if radius > 0.0:
@@ -178,7 +178,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
     m, power, turns_hard = (0.0, 0.0, 0.0), 0.0, closed and resists_turning(par)
     if turns_hard:
         m, power = turning_arms(b, par, coord, held, n)
-        drills = par[FRICTION] * (spins if slides else creeps)
+        drills = par[FRICTION_AT] * (spins if slides else creeps)
     whole = plus(m, times(drills * radius, n))
     if job == RESIDUAL:
         a = vec(b.a, b.n_extended)
@@ -239,7 +239,7 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
                 change = plus(times(g_1, t1), plus(times(g_2, t2), times(c_q, plus(times(c, by_t1), times(s, by_t2)))))
                 change = times(load, change)
             # that of z becomes that of the torque
-            spin[j] = lam[row[0]] * radius * par[FRICTION] * g_3
+            spin[j] = lam[row[0]] * radius * par[FRICTION_AT] * g_3
             for i in range(width):
                 values[slot[i, j]] -= dot(column(work, W, i), change)
         if radius > 0.0:
@@ -248,14 +248,14 @@ def grip(kind: int, b: Any, job: int, t: float, e: int, gradient: Any, held: Any
 
 @internal
 def gripping_sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    work, held, moves = np.empty((FRAME_ROWS, PAIR_SIZE)), np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):
             continue
-        if job == RESIDUAL and not moves_on(int(par[e, KIND])):
+        if job == RESIDUAL and not moves_on(int(par[e, GAP_KIND])):
             grip_spheres(b, t, e)
             continue
         kind = hold(b, e, held, moves)

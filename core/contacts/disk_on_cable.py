@@ -11,7 +11,7 @@ from ..elements.cable_kernel import NODAL
 from ..elements.material_point2d import MaterialPoint2D
 from ..model.base import Name, NonNegative
 from ..model.markers import Marker2D
-from .cable_line import WIDTH, disk_on_cable_kernel
+from .cable_line import LINE_WIDTH, disk_on_cable_kernel
 from .contact2d import Contact2D, Disk2D
 from .segment2d import refuse_point_on_line
 
@@ -30,7 +30,7 @@ class DiskOnCable2D(Contact2D):
 
     type: Literal["DiskOnCable2D"] = "DiskOnCable2D"
     kernel: ClassVar[Any] = disk_on_cable_kernel
-    width: ClassVar[int] = WIDTH
+    width: ClassVar[int] = LINE_WIDTH
 
     cable: Name
     """Name of the Cable2D."""

@@ -17,7 +17,7 @@ from ..model.base import NonNegative, Record
 from ..model.markers import GROUND, Marker2D
 from ..rounding import SAME_PLACE
 from .contact2d import Contact2D, Disk2D
-from .line2d import WIDTH, bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
+from .line2d import PIECE_WIDTH, bristle_disk_on_line_kernel, disk_on_line_kernel, sliding_disk_on_line_kernel
 from .segment2d import refuse_point_on_line
 
 SHARPEST = math.radians(170.0)
@@ -88,7 +88,7 @@ class DiskOnLine2D(Contact2D):
     kernel: ClassVar[Any] = disk_on_line_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_line_kernel
     bristle_kernel: ClassVar[Any] = bristle_disk_on_line_kernel
-    width: ClassVar[int] = WIDTH
+    width: ClassVar[int] = PIECE_WIDTH
 
     line: Line2D
     """The line."""

@@ -22,8 +22,8 @@ from ..state.modes import ACTIVE, memories_at
 from .geometry_kinds import SPHERE, are
 from .moving_point3d import MOVES, moves_on
 from .normal2d import act, evaluate_law, idle
-from .normal3d import KIND, PACKED, SIZE, gap_of, hold, pair_of
-from .sliding2d import FRICTION, FRICTION_ADDRESS
+from .normal3d import GAP_KIND, PACKED, PAIR_SIZE, gap_of, hold, pair_of
+from .sliding2d import FRICTION_ADDRESS, FRICTION_AT
 from .slip3d import add_slip, slip_of_batch, speed_rate, speed_rate_of_batch
 from .spheres3d import press_spheres, pull_spheres, slip_of_spheres
 from .surface3d import pass_surface, pass_surface_in, put_in_along
@@ -48,7 +48,7 @@ def _law(b: Any, e: int, speed: float, normal: float) -> Any:
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     return call_friction(
         extra[FRICTION_ADDRESS], speed, normal,
-        par[FRICTION], par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
+        par[FRICTION_AT], par[FRICTION_AT + 1], par[FRICTION_AT + 2], par[FRICTION_AT + 3], par[FRICTION_AT + 4],
     )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def _law(b: Any, e: int, speed: float, normal: float) -> Any:
 def rub_spheres(b: Any, t: float, e: int) -> None:
     """The residual of element e of a batch, a pair of spheres, or a sphere on a half-space: gap and friction."""
     par, extra, coord = (
-        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, SIZE)[e]
+        mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e], imat(b.coord, b.count, PAIR_SIZE)[e]
     )  # fmt: skip
     motion, found = press_spheres(b, e)
     pair, n, row = pair_of(b, e), motion[2][0], imat(b.row, b.count, 2)[e, 1]
@@ -162,14 +162,14 @@ def regularised(
 
 @internal
 def rubbing_sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    work, held, moves = np.empty((ROWS, PAIR_SIZE)), np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):
             continue
-        if job == RESIDUAL and not moves_on(int(par[e, KIND])):
+        if job == RESIDUAL and not moves_on(int(par[e, GAP_KIND])):
             rub_spheres(b, t, e)
             continue
         kind = hold(b, e, held, moves)

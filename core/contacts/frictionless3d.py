@@ -11,20 +11,20 @@ from ..elements.measure3d import COLUMNS
 from .geometry_kinds import SPHERE, are
 from .moving_point3d import MOVES, moves_on
 from .normal2d import act, idle
-from .normal3d import KIND, PACKED, SIZE, gap_of, hold
+from .normal3d import GAP_KIND, PACKED, PAIR_SIZE, gap_of, hold
 from .spheres3d import press_spheres
 
 
 @internal
 def sphere3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    held, moves = np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     par = mat(b.par, b.count, b.npar)
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):
             continue
-        if job == RESIDUAL and not moves_on(int(par[e, KIND])):
+        if job == RESIDUAL and not moves_on(int(par[e, GAP_KIND])):
             press_spheres(b, e)
             continue
         kind = hold(b, e, held, moves)

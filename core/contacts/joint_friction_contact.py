@@ -34,12 +34,12 @@ from .element import ContactElement
 from .geometry_kinds import JOINT, are
 from .sliding2d import act_sliding
 
-LOAD, SHARE, KIND, SIZE, GAIN, PAIR = 16, 17, 18, 19, 20, 21
+CONSTANT_LOAD, REACTION_SHARE, MEASURE_KIND, SLIDE_UNIT, SLIDE_GAIN, MEASURED_PAIR = 16, 17, 18, 19, 20, 21
 """Columns of the constant part of N, of the part of |F| in N, of the kind of the measure, of the sliding distance by a
 unit of it, of k, and the first of the pair of markers."""
 OWN_ROWS = 2
 """Of gap and sliding distance; those of the joint's force stand behind."""
-SPATIAL = 14
+SPATIAL_COORDINATES = 14
 
 
 @internal
@@ -52,13 +52,13 @@ def press(b: Any, job: int, e: int, own_rows: int, stop: int) -> None:
         force += lam[row[k]] ** 2
     force = math.sqrt(force)
     if job == RESIDUAL:
-        vec(b.r, b.n_extended)[w] += par[GAIN] * (par[LOAD] + par[SHARE] * force)
+        vec(b.r, b.n_extended)[w] += par[SLIDE_GAIN] * (par[CONSTANT_LOAD] + par[REACTION_SHARE] * force)
     elif job == TANGENT and force > 0.0:
         memory = memories_at(b.memory, b.n_memory)[imat(b.extra, b.count, b.nextra)[e, 0]]
         slots, values = b.ncoord * b.nrow, vec(b.values, b.n_values)
         of_rows = ivec(b.slot_jt + 8 * line_of(b, e) * slots, slots)
         for k in range(own_rows, b.nrow if memory.mode == CLOSED else own_rows):
-            values[of_rows[b.ncoord * k + stop]] += par[GAIN] * par[SHARE] * lam[row[k]] / force
+            values[of_rows[b.ncoord * k + stop]] += par[SLIDE_GAIN] * par[REACTION_SHARE] * lam[row[k]] / force
 
 
 @internal
@@ -68,8 +68,11 @@ def joint_friction_kernel(job: int, t: float, b: Any) -> None:
     gradient, square = np.empty(n), np.empty((n, n))
     tangent, hessian = np.zeros(n + 1), np.zeros((n + 1) * (n + 2) // 2)
     for e in range(b.count):
-        kind, size, gain = int(par[e, KIND]), par[e, SIZE], par[e, GAIN]
-        own, pair = ivec(b.coord + 8 * (e * b.ncoord + 1), n), vec(b.par + 8 * (e * b.npar + PAIR), b.npar - PAIR)
+        kind, size, gain = int(par[e, MEASURE_KIND]), par[e, SLIDE_UNIT], par[e, SLIDE_GAIN]
+        own, pair = (
+            ivec(b.coord + 8 * (e * b.ncoord + 1), n),
+            vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), b.npar - MEASURED_PAIR),
+        )
         s = measure_of(kind, q, own, pair, 0.0, gradient, square, True)
         for i in range(n):
             tangent[1 + i] = gradient[i]
@@ -147,7 +150,7 @@ class JointFriction(ContactElement):
         raise NotImplementedError(f"{type(self).__name__} must say how many coordinates its measure has")
 
     def _numbers(self, size: float) -> tuple[float, float]:
-        """LOAD and SHARE."""
+        """CONSTANT_LOAD and REACTION_SHARE."""
         return self.preload / size, self.arm / size
 
 
@@ -186,7 +189,7 @@ class SpatialJointFriction(JointFriction):
         return pair3d(self.measured, self.a, self.b, numbering)
 
     def width(self) -> int:
-        return SPATIAL
+        return SPATIAL_COORDINATES
 
 
 class JointFriction3D(SpatialJointFriction):

@@ -23,14 +23,16 @@ from .geometry_kinds import LINE, are
 from .normal2d import act
 from .sliding2d import act_sliding
 
-NODES = 3
-WIDTH = 3 * NODES + 3
-PAIRS = WIDTH * (WIDTH + 1) // 2
+PIECE_NODES = 3
+PIECE_WIDTH = 3 * PIECE_NODES + 3
+PAIRS = PIECE_WIDTH * (PIECE_WIDTH + 1) // 2
 
 # columns of the table of parameters; 7 to 15 are those of the laws
-BOTH, RADIUS = 0, 1
-POINTS = 16  # of the nodes and of the disk in their bodies, (NODES + 1, 2)
-MIXTURE = POINTS + 2 * (NODES + 1)  # control points of the parabola as weighted sums of nodes, (3, NODES)
+CURVE_RADII, CURVE_RADIUS = 0, 1
+CURVE_POINTS = 16  # of the nodes and of the disk in their bodies, (PIECE_NODES + 1, 2)
+MIXTURE = CURVE_POINTS + 2 * (
+    PIECE_NODES + 1
+)  # control points of the parabola as weighted sums of nodes, (3, PIECE_NODES)
 
 # columns of `extra` after those that every contact has: the number of the piece, -1 for all pieces of a closed line,
 # whose foot no end holds; and how many there are
@@ -39,9 +41,9 @@ PIECE, PIECES = 6, 7
 
 @internal
 def _place(q: Any, coord: Any, par: Any, points: Any, directions: Any, bends: Any) -> None:
-    """Nodes and centre (NODES + 1, 2), and how they move with the coordinates."""
-    for k in range(NODES + 1):
-        ux, uy, theta = par[POINTS + 2 * k], par[POINTS + 2 * k + 1], q[coord[3 * k + 2]]
+    """Nodes and centre (PIECE_NODES + 1, 2), and how they move with the coordinates."""
+    for k in range(PIECE_NODES + 1):
+        ux, uy, theta = par[CURVE_POINTS + 2 * k], par[CURVE_POINTS + 2 * k + 1], q[coord[3 * k + 2]]
         c, s = math.cos(theta), math.sin(theta)
         x, y = c * ux - s * uy, s * ux + c * uy
         points[k, 0], points[k, 1] = q[coord[3 * k]] + x, q[coord[3 * k + 1]] + y
@@ -58,22 +60,22 @@ def _controls(par: Any, points: Any, control: Any) -> None:
     for j in range(3):
         for c in range(2):
             control[j, c] = 0.0
-            for k in range(NODES):
-                control[j, c] += par[MIXTURE + NODES * j + k] * points[k, c]
+            for k in range(PIECE_NODES):
+                control[j, c] += par[MIXTURE + PIECE_NODES * j + k] * points[k, c]
 
 
 @internal
 def _weigh(par: Any, t: float, weights: Any) -> None:
-    """Weights (3, WIDTH) of the nodes in p, p' and p''; the disk's centre counts as -1, 0, 0."""
-    for k in range(NODES):
-        m0, m1, m2 = par[MIXTURE + k], par[MIXTURE + NODES + k], par[MIXTURE + 2 * NODES + k]
+    """Weights (3, PIECE_WIDTH) of the nodes in p, p' and p''; the disk's centre counts as -1, 0, 0."""
+    for k in range(PIECE_NODES):
+        m0, m1, m2 = par[MIXTURE + k], par[MIXTURE + PIECE_NODES + k], par[MIXTURE + 2 * PIECE_NODES + k]
         second = 2.0 * (m0 - 2.0 * m1 + m2)
         slope = 2.0 * (m1 - m0) + second * t
         for c in range(3):
             weights[0, 3 * k + c] = m0 + 2.0 * (m1 - m0) * t + 0.5 * second * t * t
             weights[1, 3 * k + c] = slope
             weights[2, 3 * k + c] = second
-    for c in range(3 * NODES, WIDTH):
+    for c in range(3 * PIECE_NODES, PIECE_WIDTH):
         weights[0, c], weights[1, c], weights[2, c] = -1.0, 0.0, 0.0
 
 
@@ -90,16 +92,18 @@ def _find_piece(b: Any, first: int, points: Any, directions: Any, bends: Any, co
             math.hypot(control[0, 0] - control[1, 0], control[0, 1] - control[1, 1]),
             math.hypot(control[2, 0] - control[1, 0], control[2, 1] - control[1, 1]),
         )
-        if math.hypot(points[NODES, 0] - control[1, 0], points[NODES, 1] - control[1, 1]) - reach > math.sqrt(least):
+        if math.hypot(
+            points[PIECE_NODES, 0] - control[1, 0], points[PIECE_NODES, 1] - control[1, 1]
+        ) - reach > math.sqrt(least):
             continue
-        t, square = nearest_on_parabola(control, points[NODES, 0], points[NODES, 1])
+        t, square = nearest_on_parabola(control, points[PIECE_NODES, 0], points[PIECE_NODES, 1])
         if square < least:
             best, t_best, least = e, t, square
     other = _beyond_joint(b, first, best, t_best, points, directions, bends, control)
     if other >= 0:
         _place(q, coord[other], par[other], points, directions, bends)
         _controls(par[other], points, control)
-        t_best, _ = nearest_on_parabola(control, points[NODES, 0], points[NODES, 1])
+        t_best, _ = nearest_on_parabola(control, points[PIECE_NODES, 0], points[PIECE_NODES, 1])
         best = other
     return best, t_best
 
@@ -121,7 +125,7 @@ def _beyond_joint(b: Any, first: int, e: int, t: float, points: Any, directions:
     here, k = 0 if t <= 0.0 else 2, e - first
     along_x = (control[1, 0] - control[0, 0]) if here == 0 else (control[2, 0] - control[1, 0])
     along_y = (control[1, 1] - control[0, 1]) if here == 0 else (control[2, 1] - control[1, 1])
-    on = (points[NODES, 0] - control[here, 0]) * along_x + (points[NODES, 1] - control[here, 1]) * along_y
+    on = (points[PIECE_NODES, 0] - control[here, 0]) * along_x + (points[PIECE_NODES, 1] - control[here, 1]) * along_y
     if here == 0 and on < 0.0 and (closed or k > 0):
         return first + (k - 1) % pieces
     if here == 2 and on > 0.0 and (closed or k < pieces - 1):
@@ -148,7 +152,7 @@ def _foot(b: Any, first: int, points: Any, directions: Any, bends: Any, control:
     _controls(par, points, control)
     _weigh(par, t, weights)
     _slopes(control, t, slopes)
-    ex, ey = points[NODES, 0], points[NODES, 1]
+    ex, ey = points[PIECE_NODES, 0], points[PIECE_NODES, 1]
     for j in range(3):
         share = (1.0 - t) ** 2 if j == 0 else (2.0 * t * (1.0 - t) if j == 1 else t * t)
         ex -= share * control[j, 0]
@@ -203,17 +207,17 @@ def _add_turn(b: Any, e: int, left: Any, factor: float, xi: Any, by_node: Any) -
 
 @internal
 def disk_on_line_kernel(job: int, t: float, b: Any) -> None:
-    points, directions, bends = np.empty((NODES + 1, 2)), np.empty((WIDTH, 2)), np.empty((WIDTH, 2))
-    control, weights, slopes = np.empty((3, 2)), np.empty((3, WIDTH)), np.empty((3, 2))
-    first, second = np.empty((WIDTH, 2)), np.empty((PAIRS, 2))
-    xi, xi_hessian, gradient, hessian = np.empty(WIDTH), np.empty(PAIRS), np.empty(WIDTH), np.empty(PAIRS)
+    points, directions, bends = np.empty((PIECE_NODES + 1, 2)), np.empty((PIECE_WIDTH, 2)), np.empty((PIECE_WIDTH, 2))
+    control, weights, slopes = np.empty((3, 2)), np.empty((3, PIECE_WIDTH)), np.empty((3, 2))
+    first, second = np.empty((PIECE_WIDTH, 2)), np.empty((PAIRS, 2))
+    xi, xi_hessian, gradient, hessian = np.empty(PIECE_WIDTH), np.empty(PAIRS), np.empty(PIECE_WIDTH), np.empty(PAIRS)
     e = 0
     while e < b.count:
         piece, _, moves, ex, ey = _foot(b, e, points, directions, bends, control, weights, slopes)
         foot_derivatives(weights, directions, bends, ex, ey, slopes, moves, xi, xi_hessian)
         arm_derivatives(weights, directions, bends, slopes, xi, xi_hessian, first, second)
         d = length_derivatives(ex, ey, first, second, gradient, hessian)
-        act(b, job, piece, d - mat(b.par, b.count, b.npar)[piece, BOTH], gradient, hessian)
+        act(b, job, piece, d - mat(b.par, b.count, b.npar)[piece, CURVE_RADII], gradient, hessian)
         e += imat(b.extra, b.count, b.nextra)[e, PIECES]
 
 
@@ -226,14 +230,24 @@ def _slide_on_line(b: Any, first: int) -> Any:
     w = a grad xi - r grad phi + r grad theta_b, phi the direction of the normal; on a held end
     -R grad phi + (R - r) grad(angle of the tangent) + r grad theta_b. The symmetric part of its derivatives is given.
     """
-    points, directions, bends = np.empty((NODES + 1, 2)), np.empty((WIDTH, 2)), np.empty((WIDTH, 2))
-    control, weights, slopes = np.empty((3, 2)), np.empty((3, WIDTH)), np.empty((3, 2))
-    one, two, turn, by_node = np.empty((WIDTH, 2)), np.empty((PAIRS, 2)), np.empty(WIDTH), np.zeros(WIDTH)
-    xi, xi_hessian, g_gradient, g_hessian = np.empty(WIDTH), np.empty(PAIRS), np.empty(WIDTH), np.empty(PAIRS)
-    gradient, hessian = np.zeros(WIDTH), np.zeros(PAIRS)
+    points, directions, bends = np.empty((PIECE_NODES + 1, 2)), np.empty((PIECE_WIDTH, 2)), np.empty((PIECE_WIDTH, 2))
+    control, weights, slopes = np.empty((3, 2)), np.empty((3, PIECE_WIDTH)), np.empty((3, 2))
+    one, two, turn, by_node = (
+        np.empty((PIECE_WIDTH, 2)),
+        np.empty((PAIRS, 2)),
+        np.empty(PIECE_WIDTH),
+        np.zeros(PIECE_WIDTH),
+    )
+    xi, xi_hessian, g_gradient, g_hessian = (
+        np.empty(PIECE_WIDTH),
+        np.empty(PAIRS),
+        np.empty(PIECE_WIDTH),
+        np.empty(PAIRS),
+    )
+    gradient, hessian = np.zeros(PIECE_WIDTH), np.zeros(PAIRS)
     piece, _, moves, ex, ey = _foot(b, first, points, directions, bends, control, weights, slopes)
     par = mat(b.par, b.count, b.npar)[piece]
-    both, radius = par[BOTH], par[RADIUS]
+    both, radius = par[CURVE_RADII], par[CURVE_RADIUS]
     foot_derivatives(weights, directions, bends, ex, ey, slopes, moves, xi, xi_hessian)
     arm_derivatives(weights, directions, bends, slopes, xi, xi_hessian, one, two)
     d = length_derivatives(ex, ey, one, two, g_gradient, g_hessian)
@@ -242,9 +256,9 @@ def _slide_on_line(b: Any, first: int) -> Any:
         side = 1.0 if tx * ey - ty * ex >= 0.0 else -1.0
         a, growth = _stretch(weights, directions, slopes, side, both - radius, by_node)
         k = 0
-        for i in range(WIDTH):
+        for i in range(PIECE_WIDTH):
             gradient[i] = a * xi[i]
-            for j in range(i, WIDTH):
+            for j in range(i, PIECE_WIDTH):
                 mixed = 0.5 * (xi[i] * by_node[j] + xi[j] * by_node[i])
                 hessian[k] = a * xi_hessian[k] + growth * xi[i] * xi[j] + mixed
                 k += 1
@@ -252,14 +266,14 @@ def _slide_on_line(b: Any, first: int) -> Any:
     else:
         add_direction(ex, ey, one, two, -both, gradient, hessian, turn)
         k = 0
-        for i in range(WIDTH):
+        for i in range(PIECE_WIDTH):
             for c in range(2):
                 one[i, c] = weights[1, i] * directions[i, c]
-                two[k : k + WIDTH - i, c] = 0.0
+                two[k : k + PIECE_WIDTH - i, c] = 0.0
                 two[k, c] = weights[1, i] * bends[i, c]
-            k += WIDTH - i
+            k += PIECE_WIDTH - i
         add_direction(tx, ty, one, two, both - radius, gradient, hessian, turn)
-    gradient[WIDTH - 1] += radius
+    gradient[PIECE_WIDTH - 1] += radius
     return piece, moves, d - both, g_gradient, g_hessian, gradient, hessian, xi, by_node
 
 
@@ -277,8 +291,8 @@ def sliding_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
 
 @internal
 def bristle_disk_on_line_kernel(job: int, t: float, b: Any) -> None:
-    bristle = np.zeros(WIDTH + 1)
-    bristle[WIDTH] = 1.0
+    bristle = np.zeros(PIECE_WIDTH + 1)
+    bristle[PIECE_WIDTH] = 1.0
     e = 0
     while e < b.count:
         piece, moves, g, g_gradient, g_hessian, gradient, hessian, xi, by_node = _slide_on_line(b, e)

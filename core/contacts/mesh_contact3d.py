@@ -14,14 +14,14 @@ from .geometry_kinds import SPHERE, are
 from .mesh_nearest3d import hold_on_mesh
 from .moving_point3d import MOVES
 from .normal2d import act, idle
-from .normal3d import PACKED, SIZE, gap_of
+from .normal3d import PACKED, PAIR_SIZE, gap_of
 from .tangent3d import ROWS
 
 
 @internal
 def mesh3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    held, moves = np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    held, moves = np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):
@@ -33,8 +33,8 @@ def mesh3d_kernel(job: int, t: float, b: Any) -> None:
 
 @internal
 def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work, held, moves = np.empty((ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    work, held, moves = np.empty((ROWS, PAIR_SIZE)), np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):
@@ -47,8 +47,8 @@ def rubbing_mesh3d_kernel(job: int, t: float, b: Any) -> None:
 
 @internal
 def gripping_mesh3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
-    work, held, moves = np.empty((FRAME_ROWS, SIZE)), np.empty(COLUMNS), np.empty((MOVES, SIZE))
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
+    work, held, moves = np.empty((FRAME_ROWS, PAIR_SIZE)), np.empty(COLUMNS), np.empty((MOVES, PAIR_SIZE))
     for i in range(shown(b)):
         e = shown_at(b, i)
         if idle(b, e, job):

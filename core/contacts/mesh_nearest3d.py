@@ -21,7 +21,7 @@ from .moving_point3d import SEGMENTS, hold_segments
 from .normal3d import pair_of
 
 NORMAL_AT, FLAT_AT, MIDDLE_AT, REACH_AT, STRIDE = 9, 12, 15, 18, 19
-FIRST, COUNT, OPEN = 7, 8, 9
+FIRST_TRIANGLE, TRIANGLES, OPEN_SURFACE = 7, 8, 9
 """Columns of `extra`: where the part's triangles begin in the pool, how many they are, and whether they are not the
 whole surface: then what is behind one of them is not within the body. Or the table is of edges (EDGES)."""
 ON_FACE = 3
@@ -113,8 +113,8 @@ def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
     for i in range(len(pair)):
         held[i] = pair[i]
     moves[:, :] = 0.0
-    if extra[OPEN] == EDGES:
-        return hold_on_edges(b, e, extra[FIRST], held, moves)
+    if extra[OPEN_SURFACE] == EDGES:
+        return hold_on_edges(b, e, extra[FIRST_TRIANGLE], held, moves)
     q, coord, pool = vec(b.q, b.n_extended), imat(b.coord, b.count, b.ncoord)[e], vec(b.signals, b.n_signals)
     for i in range(3):
         held[POINT_A + i] = 0.0
@@ -125,10 +125,10 @@ def hold_on_mesh(b: Any, e: int, held: Any, moves: Any) -> int:
         dot(turned(turning(p, (0.0, 1.0, 0.0)), p), d),
         dot(turned(turning(p, (0.0, 0.0, 1.0)), p), d),
     )
-    where, edge = _nearest(pool, extra[FIRST], extra[COUNT], y)
+    where, edge = _nearest(pool, extra[FIRST_TRIANGLE], extra[TRIANGLES], y)
     if edge == ON_FACE:
         behind = dot(_corner(pool, where + NORMAL_AT, 0), less(y, _corner(pool, where, 0))) < 0.0
-        side = -1.0 if behind and extra[OPEN] != 0 else 1.0
+        side = -1.0 if behind and extra[OPEN_SURFACE] != 0 else 1.0
         for i in range(3):
             held[POINT_A + i], held[AXES_A + 6 + i] = pool[where + i], side * pool[where + NORMAL_AT + i]
         return PLACE

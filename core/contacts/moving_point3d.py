@@ -15,7 +15,7 @@ from ..elements.measure3d import ANGLE, AXES_A, AXES_B, DISTANCE, PLACE, POINT_A
 from ..model.rotation3d import constant, dot, four, onto, plus, times, turned, turning
 from .support3d import call_support
 
-SIZE = 14
+PAIR_SIZE = 14
 HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE, ON_MESH, ON_SMOOTH, ON_CYLINDER, ON_RING, CROSSED = range(
     ANGLE + 1, ANGLE + 11
 )
@@ -23,7 +23,7 @@ HOLLOW, SUPPORT, SEGMENTS, ON_CABLE, POINT_OF_CABLE, ON_MESH, ON_SMOOTH, ON_CYLI
 half-space, segments along the z axes of both markers, a cable against a sphere, a point of one against a half-space,
 and a sphere on a mesh (of the nearest triangle PLACE, of the nearest edge SEGMENTS), a smooth shape, a cylinder, a
 ring; and SEGMENTS that are edges of bodies within each other: less their distance."""
-MOVE_A, MOVE_B, CHOICE, MOVED = 0, 3, 6, 9
+MOVE_A, MOVE_B, CHOICE, MOVED_POINT = 0, 3, 6, 9
 """Rows of the matrix of moves: derivatives of both points as they move along their bodies, in space; c_k and m_k: the
 latter along the axes of the second marker, or along the z axes of the first and of the second one, or along the axes of
 the first one."""
@@ -100,7 +100,7 @@ def hold_support(q: Any, coord: Any, address: int, numbers: Any, held: Any, move
             )  # fmt: skip
             at = first + j
             moves[CHOICE, at], moves[CHOICE + 1, at], moves[CHOICE + 2, at] = -dx, -dy, -dz
-            moves[MOVED, at], moves[MOVED + 1, at], moves[MOVED + 2, at] = u, v, w
+            moves[MOVED_POINT, at], moves[MOVED_POINT + 1, at], moves[MOVED_POINT + 2, at] = u, v, w
             goes = plus(times(u, x), plus(times(v, y), times(w, z)))
             moves[MOVE_B, at], moves[MOVE_B + 1, at], moves[MOVE_B + 2, at] = goes[0], goes[1], goes[2]
 
@@ -139,7 +139,7 @@ def hold_segments(q: Any, coord: Any, half_a: float, half_b: float, held: Any, m
     aa, bb, c, length = dot(a, a), dot(b, b), dot(a, b), math.sqrt(dot(d, d))
     a_turns, b_turns = onto(of_a, d), onto(of_b, d)
     a_at_a, a_at_b, b_at_a, b_at_b = onto(of_u, a), onto(of_w, a), onto(of_u, b), onto(of_w, b)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         local = j % 7 - 3
         if local < 0:
             x, y = (-a[j % 7], -b[j % 7]) if j < 7 else (a[j % 7], b[j % 7])
@@ -153,7 +153,7 @@ def hold_segments(q: Any, coord: Any, half_a: float, half_b: float, held: Any, m
         else:
             ds, dt = (x / aa, 0.0) if free_a else (0.0, -y / bb)
         moves[CHOICE, j], moves[CHOICE + 1, j], moves[CHOICE + 2, j] = x / length, -y / length, 0.0
-        moves[MOVED, j], moves[MOVED + 1, j], moves[MOVED + 2, j] = ds, dt, 0.0
+        moves[MOVED_POINT, j], moves[MOVED_POINT + 1, j], moves[MOVED_POINT + 2, j] = ds, dt, 0.0
         for i in range(3):
             moves[MOVE_A + i, j], moves[MOVE_B + i, j] = ds * a[i], dt * b[i]
 
@@ -162,8 +162,8 @@ def hold_segments(q: Any, coord: Any, half_a: float, half_b: float, held: Any, m
 def bend_held(hessian: Any, moves: Any) -> None:
     """Take from the Hessian of the held points what their moves change."""
     for k in range(3):
-        for i in range(SIZE):
+        for i in range(PAIR_SIZE):
             x = moves[CHOICE + k, i]
             if x != 0.0:
-                for j in range(SIZE):
-                    hessian[i, j] -= x * moves[MOVED + k, j]
+                for j in range(PAIR_SIZE):
+                    hessian[i, j] -= x * moves[MOVED_POINT + k, j]

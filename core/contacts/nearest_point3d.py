@@ -16,7 +16,7 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A, POINT_A, offset
 from ..model.rotation3d import constant, dot, four, less, onto, plus, times, turned, turning
-from .moving_point3d import CHOICE, HOLLOW, MOVE_A, MOVED, ON_CYLINDER, ON_SMOOTH, SIZE
+from .moving_point3d import CHOICE, HOLLOW, MOVE_A, MOVED_POINT, ON_CYLINDER, ON_SMOOTH, PAIR_SIZE
 from .support3d import call_support
 
 NONE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -179,7 +179,7 @@ def hold_on_round(kind: int, q: Any, coord: Any, address: int, numbers: Any, hel
     turns = onto(of_x, d), onto(of_y, d), onto(of_z, d)
     by_u = onto(of_u, x), onto(of_u, y), onto(of_u, z)
     by_w = onto(of_w, x), onto(of_w, y), onto(of_w, z)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         local = j % 7 - 3
         if local < 0:
             i, sign = j % 7, -1.0 if j < 7 else 1.0
@@ -193,5 +193,5 @@ def hold_on_round(kind: int, q: Any, coord: Any, address: int, numbers: Any, hel
         on = times(1.0 / square, _times(m, goes))
         far = plus(times(on[0], x), plus(times(on[1], y), times(on[2], z)))
         for i in range(3):
-            moves[CHOICE + i, j], moves[MOVED + i, j], moves[MOVE_A + i, j] = goes[i] / length, on[i], far[i]
+            moves[CHOICE + i, j], moves[MOVED_POINT + i, j], moves[MOVE_A + i, j] = goes[i] / length, on[i], far[i]
     return kind

@@ -12,8 +12,8 @@ from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import along, constant, dot, four, less, plus, times, turned, turning
-from .moving_point3d import CROSSED, MOVED, SEGMENTS
-from .normal3d import SIZE
+from .moving_point3d import CROSSED, MOVED_POINT, SEGMENTS
+from .normal3d import PAIR_SIZE
 from .tangent3d import NORMAL, OFFSET, column, product_with, put
 
 ZERO = (0.0, 0.0, 0.0)
@@ -41,13 +41,13 @@ def turn_normal(
     a, to, a_rate, to_rate = turned(of_a, p), turned(of_b, s), along(of_a, pd), along(of_b, sd)
     held, s_rate, t_rate, free_a, free_b = product_with(work, OFFSET, v, coord), 0.0, 0.0, False, False
     if kind == SEGMENTS or kind == CROSSED:
-        for j in range(SIZE):
-            s_rate += moves[MOVED, j] * v[coord[j]]
-            t_rate += moves[MOVED + 1, j] * v[coord[j]]
-            free_a, free_b = free_a or moves[MOVED, j] != 0.0, free_b or moves[MOVED + 1, j] != 0.0
+        for j in range(PAIR_SIZE):
+            s_rate += moves[MOVED_POINT, j] * v[coord[j]]
+            t_rate += moves[MOVED_POINT + 1, j] * v[coord[j]]
+            free_a, free_b = free_a or moves[MOVED_POINT, j] != 0.0, free_b or moves[MOVED_POINT + 1, j] != 0.0
     goes = plus(held, less(times(t_rate, to), times(s_rate, a)))
     aa, bb, c = dot(a, a), dot(to, to), dot(a, to)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         local, by_n, apart, change = j % 7 - 3, column(work, NORMAL, j), column(work, OFFSET, j), ZERO
         a_turns, b_turns, a_bends, b_bends = ZERO, ZERO, ZERO, ZERO
         if local >= 0 and j < 7:
@@ -55,7 +55,7 @@ def turn_normal(
         elif local >= 0:
             change, b_turns, b_bends = rate_w[local], of_b[local], rate_of_b[local]
         if free_a or free_b:
-            ds, dt = moves[MOVED, j], moves[MOVED + 1, j]
+            ds, dt = moves[MOVED_POINT, j], moves[MOVED_POINT + 1, j]
             apart = plus(apart, less(times(dt, to), times(ds, a)))
             change = plus(change, less(times(dt, to_rate), times(ds, a_rate)))
             by_c = dot(a_turns, to) + dot(a, b_turns)

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ..elements.base import BodyElement, Numbering, Row
 from ..elements.cable3d import Cable3D
-from ..elements.cable_kernel3d import NODAL
+from ..elements.cable_kernel3d import NODAL_IN_SPACE
 from ..elements.cable_shape import weights
 from ..elements.material_point3d import MaterialPoint3D
 from ..elements.named_body import body_named
@@ -16,7 +16,7 @@ from ..model.base import Name, NonNegative, Record
 from ..model.markers import Marker3D
 from .bristle3d import bristle_cable3d_kernel
 from .cable_contact3d import cable3d_contact_kernel, gripping_cable3d_kernel, rubbing_cable3d_kernel
-from .cable_foot3d import VECTORS, WIDTH
+from .cable_foot3d import FOOT_VECTORS, FOOT_WIDTH
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .moving_point3d import ON_CABLE, POINT_OF_CABLE
 from .pair_table import Make, touching
@@ -46,7 +46,7 @@ class CableContact3D(Contact3D):
     rubbing_kernel: ClassVar[Any] = rubbing_cable3d_kernel
     gripping_kernel: ClassVar[Any] = gripping_cable3d_kernel
     bristle_kernel: ClassVar[Any] = bristle_cable3d_kernel
-    width: ClassVar[int] = WIDTH
+    width: ClassVar[int] = FOOT_WIDTH
 
     cable: Name
     """Name of the Cable3D."""
@@ -82,7 +82,7 @@ class CableContact3D(Contact3D):
         row = self._row_of(numbering, marker, Marker3D(), radius, self.thickness)
         return Row(
             (*row.parameters, *at, cable.length / cable.elements),
-            (*numbering.frame(marker), *own[6 * element : 6 * element + NODAL]), (*row.extra, *pieces),
+            (*numbering.frame(marker), *own[6 * element : 6 * element + NODAL_IN_SPACE]), (*row.extra, *pieces),
         )  # fmt: skip
 
 
@@ -130,7 +130,7 @@ class SphereOnCable3D(CableContact3D):
 
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row an element of the cable."""
-        count, none = cast(Cable3D, numbering.bodies[self.cable]).elements, (0.0,) * VECTORS
+        count, none = cast(Cable3D, numbering.bodies[self.cable]).elements, (0.0,) * FOOT_VECTORS
         return [
             self._row_on(numbering, self.sphere.marker, self.sphere.radius, k, none, (k, count)) for k in range(count)
         ]

@@ -31,7 +31,7 @@ from .sliding2d import act_sliding
 
 KIND, SLIDING_KIND, BRISTLE_KIND = "scalar_contact2d", "sliding_scalar_contact2d", "bristle_scalar_contact2d"
 """Of its kernels in the library of machine code."""
-PERIOD, FIRST = 0, 16
+PERIOD, FIRST_PARAMETER = 0, 16
 """Columns of the table of parameters: by how much the sliding distance may jump, and the first one of the formulas;
 7 to 15 are those of the laws."""
 PROBES, NOT_EVEN = 7, 1e-9
@@ -91,7 +91,7 @@ def _kernel(gap: Callable[..., Any], arguments: Arguments) -> Any:
     from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
-    call = caller_of(gap, arguments, FIRST)
+    call = caller_of(gap, arguments, FIRST_PARAMETER)
 
     def scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
         par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
@@ -107,7 +107,7 @@ def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], argument
     from ..compiled.formula_code import formula_internal
     from ..compiled.jet_functions import gradient_of, hessian_of, value_of
 
-    call, call_slide = caller_of(gap, arguments, FIRST), caller_of(slide, arguments, FIRST)
+    call, call_slide = caller_of(gap, arguments, FIRST_PARAMETER), caller_of(slide, arguments, FIRST_PARAMETER)
 
     def sliding_scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
         par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)

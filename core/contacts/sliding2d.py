@@ -30,7 +30,7 @@ from .geometry_kinds import DISKS, PLANE, are
 from .moving_surface import moves, put_in, surface_speed
 from .normal2d import LAW_ADDRESS, act, evaluate_law, idle
 
-FRICTION = 11
+FRICTION_AT = 11
 """First friction parameter in the table of parameters."""
 FRICTION_ADDRESS = 5
 """Column of `extra` with the address of a regularised law's formula."""
@@ -121,7 +121,7 @@ def _regularised(
     pushing = normal > 0.0
     force, by_rate, by_normal = call_friction(
         extra[FRICTION_ADDRESS], rate, max(normal, 0.0),
-        par[FRICTION], par[FRICTION + 1], par[FRICTION + 2], par[FRICTION + 3], par[FRICTION + 4],
+        par[FRICTION_AT], par[FRICTION_AT + 1], par[FRICTION_AT + 2], par[FRICTION_AT + 3], par[FRICTION_AT + 4],
     )  # fmt: skip
     if not pushing:
         by_normal = 0.0

@@ -17,7 +17,7 @@ from ..model.rotation3d import along, constant, cross, dot, four, less, onto, pl
 from ..state.modes import ACTIVE, CLOSED, memories_at
 from .moving_point3d import HOLLOW, on_plane
 from .normal2d import LAW_ADDRESS, evaluate_law
-from .normal3d import KIND, RADIUS_A, RADIUS_B, SIZE, pair_of
+from .normal3d import GAP_KIND, PAIR_SIZE, RADIUS_A, RADIUS_B, pair_of
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -76,7 +76,7 @@ def _press(b: Any, coord: Any, plane: bool, motion: Any, force: float) -> None:
 def press_spheres(b: Any, e: int) -> Any:
     """What the gap of element e of a batch adds to the residual: (motion of the gap, normal force of its law)."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
-    coord, kind, k = imat(b.coord, b.count, SIZE)[e], int(par[KIND]), extra[0]
+    coord, kind, k = imat(b.coord, b.count, PAIR_SIZE)[e], int(par[GAP_KIND]), extra[0]
     row = imat(b.row, b.count, b.nrow)[e, 0]
     motion = gap_motion(kind, b, coord, pair_of(b, e), par[RADIUS_A] + par[RADIUS_B])
     g, rate, second = motion[0]
@@ -101,7 +101,7 @@ def slip_of_spheres(b: Any, par: Any, coord: Any, pair: Any, motion: Any) -> Any
     """(u, u', beta_a, beta_b, s, E(p) of both bodies): how they slide, from the motion of the gap."""
     v, a, q = vec(b.v, b.n_extended), vec(b.a, b.n_extended), vec(b.q, b.n_extended)
     _, (d, rate, second), (n, n_rate), _, one, grows = motion
-    ra, rb, plane = par[RADIUS_A], par[RADIUS_B], on_plane(int(par[KIND]))
+    ra, rb, plane = par[RADIUS_A], par[RADIUS_B], on_plane(int(par[GAP_KIND]))
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     w_a, w_b = times(2.0, along(axes_a, four(v, coord, 3, 0.0))), times(2.0, along(axes_b, four(v, coord, 10, 0.0)))
     # E(p') p' = 0

@@ -35,10 +35,18 @@ from ..model.rotation3d import dot, four, less, plus, space_axes, times
 from ..state.modes import AT_LIMIT, CLOSED, STICKS, memories_at
 from .coulomb3d import TURNED
 from .geometry_kinds import JOINT, are
-from .joint_friction_contact import GAIN, KIND, PAIR, SIZE, SPATIAL, SpatialJointFriction, press
+from .joint_friction_contact import (
+    MEASURE_KIND,
+    MEASURED_PAIR,
+    SLIDE_GAIN,
+    SLIDE_UNIT,
+    SPATIAL_COORDINATES,
+    SpatialJointFriction,
+    press,
+)
 from .patch3d import direction, turn_of_direction
 
-ROWS, STOP, WIDTH = 3, SPATIAL, SPATIAL + 1
+ROWS, STOP, WIDTH = 3, SPATIAL_COORDINATES, SPATIAL_COORDINATES + 1
 """Rows of gap and tangents; local coordinate of the stop, behind those of the frames; coordinates."""
 FIRST, THIRD = 1.0, -1.0
 """In the column of the kind: which of the two contacts it is."""
@@ -79,9 +87,9 @@ def _rub(b: Any, job: int, e: int) -> None:
     """What element e adds for `job`, beside its load."""
     par, extra = mat(b.par, b.count, b.npar)[e], imat(b.extra, b.count, b.nextra)[e]
     coord, row, k = imat(b.coord, b.count, WIDTH)[e], imat(b.row, b.count, b.nrow)[e], extra[0]
-    memory, first, arm = memories_at(b.memory, b.n_memory)[k], par[KIND] == FIRST, par[SIZE]
+    memory, first, arm = memories_at(b.memory, b.n_memory)[k], par[MEASURE_KIND] == FIRST, par[SLIDE_UNIT]
     q, v, a, lam = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended), vec(b.lam, b.m_extended)
-    pair, closed, w = vec(b.par + 8 * (e * b.npar + PAIR), 2), memory.mode == CLOSED, coord[STOP]
+    pair, closed, w = vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), 2), memory.mode == CLOSED, coord[STOP]
     if job != RESIDUAL and not closed:
         return
     slides, sticks = closed and abs(memory.slide_mode) == 1.0, closed and memory.slide_mode == STICKS
@@ -107,7 +115,7 @@ def _rub(b: Any, job: int, e: int) -> None:
     if job == RESIDUAL:
         rate, monitor = times(arm, relative_spin(q, a, coord, pair)), vec(b.monitor, b.n_monitor)
         _say_levels(b, row, u, rate, memory, axes, slow, first)
-        gain, r = par[GAIN], vec(b.r, b.n_extended)
+        gain, r = par[SLIDE_GAIN], vec(b.r, b.n_extended)
         vec(b.phi, b.m_extended)[row[0]] = gain * q[w]
         vec(b.phid, b.m_extended)[row[0]], vec(b.phidd, b.m_extended)[row[0]] = gain * v[w], gain * a[w]
         monitor[k] = -normal if closed else 0.0
@@ -135,13 +143,13 @@ def _add_tangent(
     par, coef, lam = mat(b.par, b.count, b.npar)[e], vec(b.coef, 2), vec(b.lam, b.m_extended)
     q, v, values, pair = (
         vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.values, b.n_values),
-        vec(b.par + 8 * (e * b.npar + PAIR), 2),
+        vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), 2),
     )  # fmt: skip
-    arm, line, rows = par[SIZE], line_of(b, e), WIDTH * b.nrow
+    arm, line, rows = par[SLIDE_UNIT], line_of(b, e), WIDTH * b.nrow
     slot = imat(b.slot_s + 8 * WIDTH * WIDTH * line, WIDTH, WIDTH)
     slot_j, slot_jt = ivec(b.slot_j + 8 * rows * line, rows), ivec(b.slot_jt + 8 * rows * line, rows)
-    values[slot_j[STOP]] += par[GAIN]
-    values[slot_jt[STOP]] += par[GAIN]
+    values[slot_j[STOP]] += par[SLIDE_GAIN]
+    values[slot_jt[STOP]] += par[SLIDE_GAIN]
     t_1, t_2, held_2, held_3 = axes
     if slow < 0.0:
         sticks, at_limit = memory.slide_mode == STICKS, memory.slide_mode == AT_LIMIT
@@ -161,7 +169,7 @@ def _add_tangent(
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
     load = -memory.friction_ratio * lam[row[0]] * arm
-    for j in range(SPATIAL):
+    for j in range(SPATIAL_COORDINATES):
         by = times(arm, spin_by_coordinate(j, coef[0], coef[1], axes_a, axes_b, spin_a, spin_b))
         g_1, g_2, g_3 = turn_of_direction(way, dot(t_1, by), dot(t_2, by), by[2])
         change = plus(times(load * g_1, t_1), times(load * g_2, t_2))
@@ -184,8 +192,8 @@ class SphericalJointFriction3D(SpatialJointFriction):
     which: ClassVar[float] = FIRST
 
     def form_with(self, felt: int) -> Form:
-        full = tuple((i, j) for i in range(SPATIAL) for j in range(SPATIAL))
-        tangents = tuple((row, j) for row in range(1, ROWS) for j in range(SPATIAL))
+        full = tuple((i, j) for i in range(SPATIAL_COORDINATES) for j in range(SPATIAL_COORDINATES))
+        tangents = tuple((row, j) for row in range(1, ROWS) for j in range(SPATIAL_COORDINATES))
         # a force that goes with the load: its derivative stands beside that of the gap
         gap = tuple((0, j) for j in range(WIDTH))
         felt_rows = ((ROWS + k, STOP) for k in range(felt))

@@ -24,9 +24,9 @@ from ..model.said_angle import CountedAngle, SaidAngle
 from .element import ContactElement
 from .geometry_kinds import STOP, are
 from .normal2d import act, is_sleeping
-from .normal3d import PACKED, SIZE, pair_of
+from .normal3d import PACKED, PAIR_SIZE, pair_of
 
-KIND, SIGN, LIMIT, START = 0, 1, 2, 3
+STOP_KIND, STOP_SIGN, STOP_LIMIT, STOP_START = 0, 1, 2, 3
 """Columns of the parameters before those of the laws; those of the pair of markers stand behind."""
 LEAST = 1e-6
 """Of a rope: distance of its ends at the start."""
@@ -36,28 +36,28 @@ ACCOUNT = 6
 
 @internal
 def stop3d_kernel(job: int, t: float, b: Any) -> None:
-    gradient, hessian, packed = np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty(PACKED)
+    gradient, hessian, packed = np.empty(PAIR_SIZE), np.empty((PAIR_SIZE, PAIR_SIZE)), np.empty(PACKED)
     q, v, extra = vec(b.q, b.n_extended), vec(b.v, b.n_extended), imat(b.extra, b.count, b.nextra)
     for e in range(b.count):
         if is_sleeping(b, e):
             continue
-        par, coord = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, SIZE)[e]
-        about = par[START] + v[extra[e, ACCOUNT]]
-        x = measure(int(par[KIND]), q, coord, pair_of(b, e), about, gradient, hessian)
-        sign, k = par[SIGN], 0
-        for i in range(SIZE):
+        par, coord = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, PAIR_SIZE)[e]
+        about = par[STOP_START] + v[extra[e, ACCOUNT]]
+        x = measure(int(par[STOP_KIND]), q, coord, pair_of(b, e), about, gradient, hessian)
+        sign, k = par[STOP_SIGN], 0
+        for i in range(PAIR_SIZE):
             gradient[i] *= -sign
-            for j in range(i, SIZE):
+            for j in range(i, PAIR_SIZE):
                 packed[k] = -sign * hessian[i, j]
                 k += 1
-        act(b, job, e, sign * (par[LIMIT] - x), gradient, packed)
+        act(b, job, e, sign * (par[STOP_LIMIT] - x), gradient, packed)
 
 
 FORM = Form(
     stop3d_kernel,
     1,
-    tuple((i, j) for i in range(SIZE) for j in range(SIZE)),
-    tuple((0, j) for j in range(SIZE)),
+    tuple((i, j) for i in range(PAIR_SIZE) for j in range(PAIR_SIZE)),
+    tuple((0, j) for j in range(PAIR_SIZE)),
 )
 
 

@@ -10,7 +10,7 @@ from ..model.rotation3d import constant, dot, less, plus, times, turns
 from .moving_surface import CARRIER, DIRECTION, SURFACE, moves, put_in, surface_speed
 from .tangent3d import U, column, put
 
-FIRST, SECOND = 3, 10
+FIRST_ATTITUDE, SECOND_ATTITUDE = 3, 10
 """Where the Euler parameters of the first body and of the second one are among the coordinates."""
 ZERO = (0.0, 0.0, 0.0)
 
@@ -21,7 +21,7 @@ def _turning_direction(b: Any, e: int, coord: Any, pair: Any) -> Any:
     element e of a batch, which moves."""
     at, pool = imat(b.extra, b.count, b.nextra)[e, SURFACE] - 1, vec(b.signals, b.n_signals)
     first = int(pool[at + CARRIER])
-    rest = pair[0] if first == FIRST else pair[1]
+    rest = pair[0] if first == FIRST_ATTITUDE else pair[1]
     columns, d, d_rate, _ = turns(b, coord, first, rest, constant(pool, at + DIRECTION))
     return first, columns, d, d_rate
 

@@ -32,8 +32,8 @@ from ..model.rotation3d import (
     turned,
     turning,
 )
-from .moving_point3d import CROSSED, HOLLOW, MOVE_A, MOVE_B, MOVED, SUPPORT, moves_on, on_plane, on_round
-from .normal3d import SIZE
+from .moving_point3d import CROSSED, HOLLOW, MOVE_A, MOVE_B, MOVED_POINT, SUPPORT, moves_on, on_plane, on_round
+from .normal3d import PAIR_SIZE
 
 W, U, NORMAL, OFFSET, ARM_A, ARM_B, GROWTH = 0, 3, 6, 9, 12, 15, 18
 """Rows of the work matrix: W, U, and derivatives of the normal, of d, of beta_a and beta_b, and of s."""
@@ -88,7 +88,7 @@ def tangent_motion(
     elif move:
         run_1 = times(-1.0, along(turning(p, m), pd))
         run_2 = along(turning(s, constant(pair, AXES_B + 6)), sd)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         unit = (1.0 if j % 7 == 0 else 0.0, 1.0 if j % 7 == 1 else 0.0, 1.0 if j % 7 == 2 else 0.0)
         local = j % 7 - 3
         if j < 7:
@@ -119,8 +119,8 @@ def tangent_motion(
             of_q = plus(of_q, times(size, rate_w[local]))
             of_q = less(of_q, times(2.0, cross(spin_b[local], beta_b)))
         if move:
-            held = plus(times(moves[MOVED, j], run_1), times(moves[MOVED + 1, j], run_2))
-            of_q = plus(of_q, times(size, plus(held, times(moves[MOVED + 2, j], run_3))))
+            held = plus(times(moves[MOVED_POINT, j], run_1), times(moves[MOVED_POINT + 1, j], run_2))
+            of_q = plus(of_q, times(size, plus(held, times(moves[MOVED_POINT + 2, j], run_3))))
         put(work, W, j, of_v)
         put(work, U, j, of_q)
         put(work, NORMAL, j, by_n)
@@ -146,8 +146,8 @@ def _add_moves(
             axis = AXES_A + 6 if on_a else AXES_B + 6
         pull = onto(turning(p if on_a else s, constant(pair, axis)), force)
         first, sign = (3, -factor) if on_a else (10, factor)
-        for j in range(SIZE):
-            way = sign * moves[MOVED + k, j]
+        for j in range(PAIR_SIZE):
+            way = sign * moves[MOVED_POINT + k, j]
             if way != 0.0:
                 for i in range(4):
                     values[slot[first + i, j]] += way * pull[i]
@@ -163,11 +163,11 @@ def add_directions(
         _add_moves(kind, values, slot, q, coord, pair, moves, force, factor * size)
     p, s = four(q, coord, 3, pair[0]), four(q, coord, 10, pair[1])
     axes_a, axes_b = space_axes(p), space_axes(s)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         grows = factor * work[GROWTH, j]
         on_a = onto(axes_a, cross(column(work, ARM_A, j), force))
         on_b = onto(axes_b, cross(column(work, ARM_B, j), force))
-        for i in range(SIZE):
+        for i in range(PAIR_SIZE):
             if grows != 0.0:
                 values[slot[i, j]] += grows * dot(column(work, OFFSET, i), force)
         for i in range(4):

@@ -15,7 +15,7 @@ from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..elements.relative_spin3d import relative_spin, spin_by_coordinate
 from ..model.rotation3d import add_lever, dot, four, less, onto, plus, space_axes, times
-from .normal3d import NUMBERS, SIZE
+from .normal3d import NUMBERS, PAIR_SIZE
 from .support3d import SUPPORT_NUMBERS
 from .tangent3d import NORMAL, column
 
@@ -75,7 +75,7 @@ def spin_changes(b: Any, par: Any, coord: Any, pair: Any, work: Any, n: Any, out
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
     w = relative_spin(q, v, coord, pair)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         turn = spin_by_coordinate(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
         out[j] = r * (dot(w, times(c_q, column(work, NORMAL, j))) + dot(n, turn))
 
@@ -86,7 +86,7 @@ def add_spin_tangent(b: Any, coord: Any, pair: Any, slot: Any, work: Any, n: Any
     (14,): of its size."""
     q, values, c_q = vec(b.q, b.n_extended), vec(b.values, b.n_values), vec(b.coef, 2)[0]
     axes_a, axes_b = space_axes(four(q, coord, 3, pair[0])), space_axes(four(q, coord, 10, pair[1]))
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         by = plus(times(changes[j], n), times(c_q * torque, column(work, NORMAL, j)))
         on_a, on_b = onto(axes_a, by), onto(axes_b, by)
         for i in range(4):
@@ -122,7 +122,7 @@ def add_torque_tangent(
     spin_a, spin_b = space_axes(four(v, coord, 3, 0.0)), space_axes(four(v, coord, 10, 0.0))
     w = relative_spin(q, v, coord, pair)
     w_n, w_t, of_n, of_t = _parts(par, w, n)
-    for j in range(SIZE):
+    for j in range(PAIR_SIZE):
         by_n = times(c_q, column(work, NORMAL, j))
         change = spin_by_coordinate(j, c_q, c_v, axes_a, axes_b, spin_a, spin_b)
         along_n = dot(change, n) + dot(w, by_n)

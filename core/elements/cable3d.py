@@ -11,7 +11,7 @@ from ..model.attitude import UPRIGHT, Attitude, rotation_matrix
 from ..model.base import Vector3
 from .base import Numbering, Row
 from .cable_body import SLOPE_SCALE, CableBody
-from .cable_kernel3d import NODAL, cable3d_kernel
+from .cable_kernel3d import NODAL_IN_SPACE, cable3d_kernel
 from .cable_shape import POINTS, weights
 from .coordinate import Coordinate
 
@@ -45,7 +45,9 @@ class Cable3D(CableBody):
 
     type: Literal["Cable3D"] = "Cable3D"
     kernel: ClassVar[Any] = cable3d_kernel
-    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = tuple(
+        (i, j) for i in range(NODAL_IN_SPACE) for j in range(NODAL_IN_SPACE)
+    )
 
     reference_strain: float = 0.0
     """Axial strain without force, dimensionless."""
@@ -105,7 +107,7 @@ class Cable3D(CableBody):
             self.axial_damping, self.reference_strain, *numbering.gravity, *map(float, POINTS[self.integration]),
         )  # fmt: skip
         extra = (numbering.work("dampers"),)
-        return [Row(parameters, own[6 * e : 6 * e + NODAL], extra) for e in range(self.elements)]
+        return [Row(parameters, own[6 * e : 6 * e + NODAL_IN_SPACE], extra) for e in range(self.elements)]
 
     def point(self, s: float) -> CablePoint:
         """The point s m along the undeformed cable. Raises ModelError beyond it."""

@@ -20,7 +20,7 @@ from ..model.rotation3d import dot, plus, times
 from .cable_kernel import MASS_MATRIX, WEIGHT
 from .cable_shape import FIRST, SECOND, SHARE
 
-NODAL = 12
+NODAL_IN_SPACE = 12
 """Coordinates of an element: x, y, z, slope_x, slope_y, slope_z of its two nodes."""
 LENGTH, MASS, AXIAL, BENDING, AXIAL_DAMPING, STRAIN, GRAVITY, AXIAL_POINTS, BENDING_POINTS, COLUMNS = (
     0, 1, 2, 3, 4, 5, 6, 9, 10, 11,
@@ -68,7 +68,7 @@ def _bending(a: Any, b: Any) -> Any:
 
 @internal
 def _residual(b: Any) -> None:
-    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
+    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL_IN_SPACE)
     q, v, a, r = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended), vec(b.r, b.n_extended)
     for e in range(b.count):
         coord, length = coords[e], par[e, LENGTH]
@@ -149,9 +149,9 @@ def _add_bending(par: Any, u: Any, c_q: float, g: Any) -> None:
 
 @internal
 def _tangent(b: Any, g: Any) -> None:
-    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
+    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL_IN_SPACE)
     q, v, values = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.values, b.n_values)
-    slots = imat(b.slot_s, b.count, NODAL * NODAL)
+    slots = imat(b.slot_s, b.count, NODAL_IN_SPACE * NODAL_IN_SPACE)
     c_q, c_v = vec(b.coef, 2)[0], vec(b.coef, 2)[1]
     for e in range(b.count):
         coord, length, slot = coords[e], par[e, LENGTH], slots[e]
@@ -169,7 +169,7 @@ def _tangent(b: Any, g: Any) -> None:
                 lj = 1.0 if j % 2 == 0 else length
                 s, wj = (0, (-1.0 if j == 0 else 1.0) / length) if j % 2 == 0 else ((j + 1) // 2, 1.0)
                 for c in range(3):
-                    row = (3 * i + c) * NODAL + 3 * j
+                    row = (3 * i + c) * NODAL_IN_SPACE + 3 * j
                     values[slot[row + c]] += mass * li * lj * MASS_MATRIX[i, j]
                     for d in range(3):
                         values[slot[row + d]] += wi * wj * g[p, s, c, d]
@@ -178,7 +178,7 @@ def _tangent(b: Any, g: Any) -> None:
 @internal
 def _energies(b: Any) -> None:
     """Kinetic, potential and strain energy."""
-    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
+    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL_IN_SPACE)
     q, v, energy = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.energy, 3)
     for e in range(b.count):
         coord, length = coords[e], par[e, LENGTH]
@@ -204,7 +204,7 @@ def _energies(b: Any) -> None:
 @internal
 def _dissipated(b: Any) -> None:
     """Power of the damping."""
-    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL)
+    par, coords = mat(b.par, b.count, COLUMNS), imat(b.coord, b.count, NODAL_IN_SPACE)
     q, v, account = vec(b.q, b.n_extended), vec(b.v, b.n_extended), imat(b.extra, b.count, 1)
     for e in range(b.count):
         if par[e, AXIAL_DAMPING] == 0.0:

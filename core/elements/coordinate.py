@@ -31,3 +31,7 @@ class Coordinate:
     def unit_of(self, level: int) -> str:
         """Unit of the coordinate (level 0), its rate (1) or second rate (2); "-" stays as it is."""
         return self.unit if level == 0 or self.unit == UNKNOWN_UNIT else self.unit + ("", "/s", "/s2")[level]
+
+
+X, Y, Z = (Coordinate(name, "m", f"v{name}", f"a{name}") for name in "xyz")
+"""Those of a place, in the plane and in space."""

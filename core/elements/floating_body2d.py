@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base import Form, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y
 from .flexible_body import FlexibleBody, PointShape
 from .floating_kernel2d import floating_body2d_kernel
-from .planar_body import ANGLE, PlanarBody, X, Y
+from .planar_body import ANGLE_COORDINATE, PlanarBody
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,12 @@ class FloatingBody2D(PlanarBody, FlexibleBody):
         return PointShape(("x", "y", "angle"), self.mode_names(), place, (1.0, 0.0), shape, slope, second)
 
     def coordinate_records(self) -> Sequence[Coordinate]:
-        return (X, Y, ANGLE, *(Coordinate(name, "m", f"d_{name}", f"dd_{name}") for name in self.mode_names()))
+        return (
+            X,
+            Y,
+            ANGLE_COORDINATE,
+            *(Coordinate(name, "m", f"d_{name}", f"dd_{name}") for name in self.mode_names()),
+        )
 
     def initial_state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """(q0, v0)."""

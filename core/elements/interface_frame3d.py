@@ -34,11 +34,11 @@ from ..model.rotation3d import (
     turning,
 )
 from .base import NO_INPUTS, BodyElement, Form, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y, Z
 from .interface_load3d import InterfaceLoad
 from .named_body import body_named
 from .reduced_body3d import ReducedBody3D
-from .spatial_body import EULER, SpatialFrame, X, Y, Z
+from .spatial_body import EULER, SpatialFrame
 
 BODY, LOCAL = 7, 14
 """Where the coordinates of the body's frame begin among those of this element, and its amplitudes."""

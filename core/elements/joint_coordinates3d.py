@@ -8,7 +8,7 @@ from ..compiled.jit import internal
 from ..model.attitude import EulerParameters, product
 from ..model.channels import Channel
 from ..model.derived import NOT_KNOWN, Derived, Places
-from ..model.frame3d import ARM, FRAME, Frame3D, four_of, in_space, point_of, three_of, vector_of
+from ..model.frame3d import ARMS_AT, FRAME, Frame3D, four_of, in_space, point_of, three_of, vector_of
 from ..model.markers import Marker3D
 from ..model.rotation3d import along, cross, dot, less, plus, space_rate, times, turning
 
@@ -28,8 +28,8 @@ def joint_angle(row: Any, places: Any, numbers: Any, out: Any) -> None:
     about = numbers[0] + row[places[ACCOUNT]]
     out[0] = angle + TURN * math.floor((about - angle) / TURN + 0.5)
     of_a, of_b = (
-        space_rate(four_of(row, places, ARM, 1.0), four_of(row, places, VELOCITY + ARM, 0.0)),
-        space_rate(four_of(row, places, FRAME + ARM, 1.0), four_of(row, places, VELOCITY + FRAME + ARM, 0.0)),
+        space_rate(four_of(row, places, ARMS_AT, 1.0), four_of(row, places, VELOCITY + ARMS_AT, 0.0)),
+        space_rate(four_of(row, places, FRAME + ARMS_AT, 1.0), four_of(row, places, VELOCITY + FRAME + ARMS_AT, 0.0)),
     )
     out[1] = 2.0 * dot(less(of_b, of_a), z)
 
@@ -37,7 +37,7 @@ def joint_angle(row: Any, places: Any, numbers: Any, out: Any) -> None:
 @internal
 def _velocity(row: Any, places: Any, first: int, u: Any) -> Any:
     """Rate of the point u of the frame whose places begin at `first`."""
-    p, rate = four_of(row, places, first + ARM, 1.0), four_of(row, places, VELOCITY + first + ARM, 0.0)
+    p, rate = four_of(row, places, first + ARMS_AT, 1.0), four_of(row, places, VELOCITY + first + ARMS_AT, 0.0)
     return plus(three_of(row, places, VELOCITY + first), along(turning(p, u), rate))
 
 
@@ -46,7 +46,7 @@ def joint_position(row: Any, places: Any, numbers: Any, out: Any) -> None:
     a, b, z = vector_of(numbers, 0), vector_of(numbers, 3), in_space(row, places, 0, vector_of(numbers, 6))
     d = less(point_of(row, places, FRAME, b), point_of(row, places, 0, a))
     rate = less(_velocity(row, places, FRAME, b), _velocity(row, places, 0, a))
-    turning_a = space_rate(four_of(row, places, ARM, 1.0), four_of(row, places, VELOCITY + ARM, 0.0))
+    turning_a = space_rate(four_of(row, places, ARMS_AT, 1.0), four_of(row, places, VELOCITY + ARMS_AT, 0.0))
     out[0], out[1] = dot(z, d), dot(z, rate) + dot(times(2.0, cross(turning_a, z)), d)
 
 

@@ -20,9 +20,9 @@ from ..model.channels import Channel
 from ..model.markers import GROUND
 from ..model.words import an
 from .base import NO_INPUTS, BodyElement, Form, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y
 from .flexible_body import FlexibleBody, PointShape
-from .planar_body import ANGLE, PlanarFrame, X, Y
+from .planar_body import ANGLE_COORDINATE, PlanarFrame
 
 FIXED = 6
 """Coordinates before the local ones: x, y, angle of the point's frame and of the floating frame."""
@@ -188,7 +188,7 @@ class MaterialPoint2D(PlanarFrame):
         return super().acts_on() | {self.body}
 
     def coordinate_records(self) -> Sequence[Coordinate]:
-        return (X, Y, ANGLE)
+        return (X, Y, ANGLE_COORDINATE)
 
     def start_in(
         self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS

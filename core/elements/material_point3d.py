@@ -15,9 +15,9 @@ from ..model.channels import Channel
 from ..model.markers import Marker
 from .base import NO_INPUTS, BodyElement, Numbering, Row
 from .cable3d import Cable3D
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y, Z
 from .named_body import body_named
-from .spatial_body import SpatialFrame, X, Y, Z
+from .spatial_body import SpatialFrame
 
 SIZE = 15
 """Coordinates: those of the point, then the twelve of the element."""

@@ -13,8 +13,8 @@ from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, Constant, InputSignal, Signal, Step, evaluate_signal
 from .base import NO_INPUTS, BodyElement, Numbering, Row
-from .coordinate import Coordinate
-from .planar_body import ANGLE, PlanarFrame, X, Y
+from .coordinate import Coordinate, X, Y
+from .planar_body import ANGLE_COORDINATE, PlanarFrame
 
 
 @internal
@@ -78,7 +78,7 @@ class MovingFrame2D(PlanarFrame):
         return True
 
     def coordinate_records(self) -> Sequence[Coordinate]:
-        return (X, Y, ANGLE)
+        return (X, Y, ANGLE_COORDINATE)
 
     def start_in(
         self, bodies: Mapping[str, BodyElement], inputs: Mapping[str, float] = NO_INPUTS

@@ -12,7 +12,7 @@ from ..compiled.views import imat, mat, vec
 from ..model.base import Positive, Vector2
 from ..model.markers import Marker, Marker2D
 from .base import BodyElement, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y
 
 
 @internal
@@ -44,8 +44,7 @@ def planar_body_kernel(job: int, t: float, b: Any) -> None:
             energy[1] -= par[e, 2] * q[i] + par[e, 3] * q[j]
 
 
-X, Y = Coordinate("x", "m", "vx", "ax"), Coordinate("y", "m", "vy", "ay")
-ANGLE = Coordinate("angle", "rad", "angular_velocity", "angular_acceleration", 1.0)
+ANGLE_COORDINATE = Coordinate("angle", "rad", "angular_velocity", "angular_acceleration", 1.0)
 
 
 class PlanarFrame(BodyElement):
@@ -116,7 +115,7 @@ class RigidBody2D(PlanarBody):
     """Initial angular velocity, rad/s."""
 
     def coordinate_records(self) -> Sequence[Coordinate]:
-        return (X, Y, ANGLE)
+        return (X, Y, ANGLE_COORDINATE)
 
     def row(self, numbering: Numbering) -> Row:
         return self._row(numbering, self.inertia)

@@ -17,11 +17,11 @@ from ..model.base import Name, Positive, Record, Vector3
 from ..model.derived import Derived
 from ..model.markers import Marker3D
 from .base import Form, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y, Z
 from .linear_system import Matrix, Vector
 from .reduced_checks import check_mass, check_sign, check_size, check_symmetry
 from .reduced_kernel3d import reduced_body3d_kernel
-from .spatial_body import EULER, SpatialFrame, X, Y, Z, marker_on, parameter_rates
+from .spatial_body import EULER, SpatialFrame, marker_on, parameter_rates
 
 Array = NDArray[np.float64]
 Rows3 = tuple[Vector3, ...]

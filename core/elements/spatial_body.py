@@ -35,11 +35,8 @@ from ..model.rotation3d import (
 )
 from ..rounding import TRIANGLE
 from .base import BodyElement, Numbering, Row
-from .coordinate import Coordinate
+from .coordinate import Coordinate, X, Y, Z
 
-X = Coordinate("x", "m", "vx", "ax")
-Y = Coordinate("y", "m", "vy", "ay")
-Z = Coordinate("z", "m", "vz", "az")
 EULER = tuple(Coordinate(f"e{k}", "1", f"e{k}_rate", f"e{k}_acceleration", 1.0, turns=True) for k in range(4))
 
 

@@ -11,7 +11,7 @@ from ..compiled.jit import internal
 from ..compiled.views import mat
 from ..contacts.geometry_kinds import DISKS, SPHERE
 from ..contacts.moving_point3d import HOLLOW, ON_CABLE, POINT_OF_CABLE, SUPPORT
-from ..contacts.normal3d import EXTENT_A, EXTENT_B, KIND, PAIR, RADIUS_A, RADIUS_B
+from ..contacts.normal3d import EXTENT_A, EXTENT_B, GAP_KIND, PAIR_AT, RADIUS_A, RADIUS_B
 from ..elements.measure3d import PLACE, POINT_A, POINT_B
 from .contact_evaluation import probe_of
 
@@ -19,11 +19,11 @@ IN_SPACE, WHO, SIDE = 7, 8, 9
 BALL_INTEGERS = 10
 """Columns of `ball_coords`: the coordinates of the body that carries the ball, three in the plane and seven in space;
 whether it is of space; a contact that it belongs to, and whether it is its second shape."""
-POINT, RADIUS, REST = 0, 3, 4
+BALL_POINT, BALL_RADIUS, BALL_REST = 0, 3, 4
 BALL_NUMBERS = 5
 """Columns of `balls`: the centre on its body, the radius, and what is added to the body's first Euler parameter."""
 MARKS = 3
-VALID, FOUND, ORDERED = range(MARKS)
+VALID, PAIRS_FOUND, ORDERED = range(MARKS)
 """Entries of `broad`: whether the last sweep holds, its number, and whether there is an order of the balls."""
 FEWEST = 24
 """Contacts between balls from which on a sweep pays."""
@@ -72,7 +72,7 @@ def _sides(assembly: Assembly) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
             continue
         of, at = np.array(here, dtype=np.int64).T
         if kind == SPHERE:
-            ends = ~np.isin(batch.par[at, KIND], ENDLESS)
+            ends = ~np.isin(batch.par[at, GAP_KIND], ENDLESS)
             of, at = of[ends], at[ends]
         both = np.stack([_told(batch, kind, at, side) for side in range(2)], axis=1)
         keys.append(both.reshape(2 * len(at), both.shape[2]))
@@ -87,10 +87,10 @@ def _told(batch: Batch, kind: int, at: NDArray[np.int64], side: int) -> NDArray[
     key[:, :width], key[:, IN_SPACE] = batch.coord[at, width * side : width * (side + 1)], kind == SPHERE
     par, ball = batch.par[at], key[:, IN_SPACE + 1 :]
     if kind == DISKS:
-        ball[:, POINT : POINT + 2] = par[:, 2 * side : 2 * side + 2]
+        ball[:, BALL_POINT : BALL_POINT + 2] = par[:, 2 * side : 2 * side + 2]
         return key
-    place = PAIR + (POINT_B if side else POINT_A)
-    ball[:, POINT : POINT + 3] = par[:, place : place + 3]
+    place = PAIR_AT + (POINT_B if side else POINT_A)
+    ball[:, BALL_POINT : BALL_POINT + 3] = par[:, place : place + 3]
     return key
 
 
@@ -100,11 +100,11 @@ def tell_ball(loop: Any, k: int, side: int, in_space: int, ball: Any) -> None:
     batch = probe_of(loop, k)
     par = mat(batch.par, batch.count, batch.npar)[0]
     if in_space == 0:
-        ball[POINT], ball[POINT + 1], ball[POINT + 2] = par[2 * side], par[2 * side + 1], 0.0
-        ball[RADIUS], ball[REST] = par[_FIRST] if side == 0 else par[_SUM] - par[_FIRST], 0.0
+        ball[BALL_POINT], ball[BALL_POINT + 1], ball[BALL_POINT + 2] = par[2 * side], par[2 * side + 1], 0.0
+        ball[BALL_RADIUS], ball[BALL_REST] = par[_FIRST] if side == 0 else par[_SUM] - par[_FIRST], 0.0
         return
-    at = PAIR + (POINT_A if side == 0 else POINT_B)
+    at = PAIR_AT + (POINT_A if side == 0 else POINT_B)
     for i in range(3):
-        ball[POINT + i] = par[at + i]
-    ball[RADIUS] = par[RADIUS_A] + par[EXTENT_A] if side == 0 else par[RADIUS_B] + par[EXTENT_B]
-    ball[REST] = par[PAIR + side]
+        ball[BALL_POINT + i] = par[at + i]
+    ball[BALL_RADIUS] = par[RADIUS_A] + par[EXTENT_A] if side == 0 else par[RADIUS_B] + par[EXTENT_B]
+    ball[BALL_REST] = par[PAIR_AT + side]

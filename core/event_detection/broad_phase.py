@@ -15,19 +15,19 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..contacts.gap_motion_bound3d import TURN
+from ..contacts.gap_motion_bound3d import TURN_BOUND
 from ..methods.history import history_row
 from ..state.modes import OPEN, memories_at
 from .balls import (
     BALL_INTEGERS,
     BALL_NUMBERS,
-    FOUND,
+    BALL_POINT,
+    BALL_RADIUS,
+    BALL_REST,
     IN_SPACE,
     MARKS,
     ORDERED,
-    POINT,
-    RADIUS,
-    REST,
+    PAIRS_FOUND,
     SIDE,
     VALID,
     WHO,
@@ -51,25 +51,25 @@ CENTRE, SKIN, GONE = 0, 3, 4
 def _way_of_ball(loop: Any, i: int, way: Any) -> float:
     """An upper bound of how far the centre of ball i goes within the step, m."""
     c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
-    arm = math.sqrt(x[POINT] ** 2 + x[POINT + 1] ** 2 + x[POINT + 2] ** 2)
+    arm = math.sqrt(x[BALL_POINT] ** 2 + x[BALL_POINT + 1] ** 2 + x[BALL_POINT + 2] ** 2)
     if c[IN_SPACE] == 0:
         return float(way[c[0]] + way[c[1]] + arm * way[c[2]])
     moves = math.sqrt(way[c[0]] ** 2 + way[c[1]] ** 2 + way[c[2]] ** 2)
     turns = math.sqrt(way[c[3]] ** 2 + way[c[4]] ** 2 + way[c[5]] ** 2 + way[c[6]] ** 2)
-    return float(moves + TURN * arm * turns)
+    return float(moves + TURN_BOUND * arm * turns)
 
 
 @internal
 def _skin(loop: Any, i: int, way: float) -> float:
     """How thick the skin of ball i is, m, that goes this way in a step."""
-    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i, RADIUS]))
+    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i, BALL_RADIUS]))
 
 
 @internal
 def _place(loop: Any, i: int, q: Any, centre: Any) -> None:
     """Where the centre of ball i is, (3,), m."""
     c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
-    u, v, w = x[POINT], x[POINT + 1], x[POINT + 2]
+    u, v, w = x[BALL_POINT], x[BALL_POINT + 1], x[BALL_POINT + 2]
     centre[0], centre[1], centre[2] = q[c[0]], q[c[1]], 0.0
     if c[IN_SPACE] == 0:
         cos, sin = math.cos(q[c[2]]), math.sin(q[c[2]])
@@ -77,7 +77,7 @@ def _place(loop: Any, i: int, q: Any, centre: Any) -> None:
         centre[1] += sin * u + cos * v
         return
     centre[2] = q[c[2]]
-    a, b, d, e = x[REST] + q[c[3]], q[c[4]], q[c[5]], q[c[6]]
+    a, b, d, e = x[BALL_REST] + q[c[3]], q[c[4]], q[c[5]], q[c[6]]
     # u + 2 a (p x u) + 2 p x (p x u), p = (b, d, e)
     x1, x2, x3 = d * w - e * v, e * u - b * w, b * v - d * u
     centre[0] += u + 2.0 * (a * x1 + d * x3 - e * x2)
@@ -133,7 +133,7 @@ def _measure(loop: Any) -> None:
                 ball = balls[i if side == turned[p] else others[p]]
                 tell_ball(loop, contacts[p], side, coords[i, IN_SPACE], other)
                 u, v, w = other[0] - ball[0], other[1] - ball[1], other[2] - ball[2]
-                ball[RADIUS] = max(ball[RADIUS], other[RADIUS] + math.sqrt(u * u + v * v + w * w))
+                ball[BALL_RADIUS] = max(ball[BALL_RADIUS], other[BALL_RADIUS] + math.sqrt(u * u + v * v + w * w))
 
 
 @internal
@@ -150,7 +150,7 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
     mean, spread = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(n):
         _place(loop, i, start, moves[i])
-        radius = balls[i, RADIUS]
+        radius = balls[i, BALL_RADIUS]
         moves[i, SKIN] = _skin(loop, i, _way_of_ball(loop, i, way))
         moves[i, GONE] = 0.0
         reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
@@ -173,7 +173,7 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
             order[at] = order[at - 1]
             at -= 1
         order[at] = i
-    marks[FOUND] += 1
+    marks[PAIRS_FOUND] += 1
     for p in range(n):
         i = order[p]
         high = moves[i, axis] + reach[i]
@@ -184,7 +184,7 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
             both = reach[i] + reach[j]
             dx, dy, dz = moves[i, 0] - moves[j, 0], moves[i, 1] - moves[j, 1], moves[i, 2] - moves[j, 2]
             if dx * dx + dy * dy + dz * dz <= both * both:
-                _find(loop, i, j, marks[FOUND], workspace)
+                _find(loop, i, j, marks[PAIRS_FOUND], workspace)
     _choose(workspace, method, loop, marks)
     marks[VALID] = 1
 
@@ -215,7 +215,7 @@ def _choose(workspace: Any, method: Any, loop: Any, marks: Any) -> None:
     looked, found, sleeping = ivec(workspace.looked, n + 1), ivec(loop.pair_found, n), ivec(workspace.sleeping, n)
     memory, brackets, count = memories_at(workspace.memory, n), mat(loop.brackets, n, BRACKET), 0
     for k in range(n):
-        near = found[k] < 0 or found[k] == marks[FOUND]
+        near = found[k] < 0 or found[k] == marks[PAIRS_FOUND]
         if near and sleeping[k] == DEEPLY:
             wake(workspace, method, loop, k)
         elif not near and sleeping[k] != DEEPLY and memory[k].mode == OPEN:

@@ -21,7 +21,7 @@ from ..contacts.stop3d import ACCOUNT
 from ..methods.history import history_row, history_time
 
 NEAR_SIZE = 3
-KIND, KERNEL, SLEEPS = range(NEAR_SIZE)
+NEAR_KIND, NEAR_KERNEL, SLEEPS = range(NEAR_SIZE)
 """Columns of `near`; SLEEPS: 1 for contacts that may fall asleep."""
 BRACKET = 4
 HAPPENS = 3
@@ -42,7 +42,7 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
     count = max(len(assembly.contacts), 1)
     own["sleeping"] = np.zeros(count, dtype=np.int64)
     near, probes = np.zeros((count, NEAR_SIZE), dtype=np.int64), np.zeros(count, BATCH)
-    near[:, KIND] = EQUATIONS
+    near[:, NEAR_KIND] = EQUATIONS
     batches, tables = assembly.batches, [workspace.batch_table(number) for number in range(len(assembly.batches))]
     alone = contacts_alone(assembly)
     # a tangent of a contact alone: Phi_q goes to places of its own one after another, all else nowhere
@@ -68,7 +68,7 @@ def build_probes(workspace: Workspace) -> dict[str, NDArray[Any]]:
         for name, address in common.items():
             probes[name][of] = address
         kinds = [assembly.contacts[k].kind for k in of.tolist()]
-        near[of, KIND], near[of, KERNEL] = kinds, batch.address
+        near[of, NEAR_KIND], near[of, NEAR_KERNEL] = kinds, batch.address
         near[of, SLEEPS] = [kind in MAY_SLEEP and k not in massless for k, kind in zip(of.tolist(), kinds, strict=True)]
     return {
         "near": near, "probes": probes.view(np.int64).reshape(count, -1),
@@ -126,7 +126,7 @@ def _look_at_system(workspace: Any, method: Any, loop: Any, row: int, h: float, 
 @internal
 def look(workspace: Any, method: Any, loop: Any, k: int, row: int, h: float, s: float, view: Any) -> None:
     """Value, rate and acceleration (3,) of row `row` of contact k at time s h of the step of size h."""
-    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KIND]
     if kind == EQUATIONS:
         _look_at_system(workspace, method, loop, row, h, s, view)
         return
@@ -142,7 +142,10 @@ def look(workspace: Any, method: Any, loop: Any, k: int, row: int, h: float, s: 
         i = imat(batch.extra, batch.count, batch.nextra)[0, ACCOUNT]
         to_v[i] = start[n + i] + s * (v[i] - start[n + i])
     call_kernel(
-        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, history_time(method, 0) + s * h, batch
+        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL],
+        RESIDUAL,
+        history_time(method, 0) + s * h,
+        batch,
     )
     view[0], view[1], view[2] = (
         vec(loop.probe_phi, workspace.m_ext)[row],
@@ -164,7 +167,9 @@ def tell_gradients(workspace: Any, loop: Any, k: int) -> None:
     for e in range(batch.count * batch.nrow * batch.ncoord):
         values[e] = 0.0
     coef[0] = coef[1] = 0.0
-    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], TANGENT, vec(workspace.t, 1)[0], batch)
+    call_kernel(
+        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL], TANGENT, vec(workspace.t, 1)[0], batch
+    )
 
 
 @internal
@@ -188,7 +193,7 @@ def gradient_alone(workspace: Any, loop: Any, k: int, row: int, out: Any) -> Non
 @internal
 def can_look(loop: Any, k: int) -> bool:
     """True if contact k can be evaluated alone."""
-    return bool(ivec(loop.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + KERNEL] != 0)
+    return bool(ivec(loop.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + NEAR_KERNEL] != 0)
 
 
 @internal
@@ -207,7 +212,9 @@ def pull_alone(workspace: Any, loop: Any, k: int, row: int, out: Any) -> None:
         to_q[i], to_v[i], to_a[i], r[i] = q[i], v[i], a[i], 0.0
     # all that a contact adds to the residual goes with its multipliers
     lam[row] = -1.0
-    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(workspace.t, 1)[0], batch)
+    call_kernel(
+        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL], RESIDUAL, vec(workspace.t, 1)[0], batch
+    )
     lam[row] = 0.0
     for j in range(batch.count * batch.ncoord):
         if coord[j] < workspace.n:
@@ -237,7 +244,7 @@ def rate_alone(workspace: Any, loop: Any, k: int, row: int, t: float, i: int) ->
     for j in coord:
         v[j] = 0.0
     v[i] = 1.0
-    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL], RESIDUAL, t, batch)
     v[i] = 0.0
     return float(vec(loop.probe_phid, workspace.m_ext)[row])
 

@@ -16,7 +16,7 @@ from ..methods.history import history_row, history_time
 from ..state.modes import OPEN, memories_at
 from ..state.run_records import WATCH
 from .balls import MARKS, VALID
-from .contact_evaluation import KERNEL, NEAR_SIZE, SLEEPS, probe_of
+from .contact_evaluation import NEAR_KERNEL, NEAR_SIZE, SLEEPS, probe_of
 from .root_bounds import way_of_gap
 
 AWAKE, ASLEEP, DEEPLY = 0, 1, 2
@@ -40,7 +40,7 @@ def _evaluate_alone(workspace: Any, loop: Any, k: int, t: float, q: Any, v: Any,
     for j in range(batch.count * batch.ncoord):
         i = coord[j]
         to_q[i], to_v[i], to_a[i] = q[i], v[i], a[i]
-    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, t, batch)
+    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL], RESIDUAL, t, batch)
 
 
 @internal

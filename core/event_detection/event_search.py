@@ -16,7 +16,7 @@ from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.run_records import CLOCK_SIZE, FOUND_SIZE, TRIAL_STEP, call_accept, call_find_events
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS
-from .event_step import AT_ONCE, event_step
+from .event_step import END_OF_STEP, event_step
 from .roots import NEAREST, dense_root
 from .trial_steps import make_trial
 
@@ -86,7 +86,7 @@ def locate(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
             if found[k, STATE] == HAPPENED:
                 nearest = min(nearest, found[k, SIZE])
         # no time lies between: a step to there would be none
-        at_once = least if method.exact != 0 else AT_ONCE * h
+        at_once = least if method.exact != 0 else END_OF_STEP * h
         if (nearest if method.exact != 0 else first) <= at_once:
             recall(workspace, method, 0)
             for k in range(workspace.n_contacts):

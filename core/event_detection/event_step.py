@@ -14,9 +14,9 @@ from ..state.modes import ACTIVE, AT_ZERO_FORCE, AT_ZERO_GAP_OR_FORCE, CLOSED, O
 from ..state.run_records import WATCH
 from ..state.workspace_records import OK
 from .roots import find_root, go_back, root_by_rate
-from .trial_steps import CLOSING, FORCE, GAP, OVERLAP, trial_value
+from .trial_steps import CLOSING_ROOT, FORCE_ROOT, GAP_ROOT, OVERLAP_ROOT, trial_value
 
-AT_ONCE = 1e-6
+END_OF_STEP = 1e-6
 """Of a step. Methods that do not meet the constraints at all levels do not give the newest row's force (or gap rate)
 in the limit of small steps: an event located this near to it lies at the row itself, and no step is made to it."""
 
@@ -27,15 +27,15 @@ def _by_force(
 ) -> Any:
     """(status, size, whether it happens) of an event at which a force or what friction can still hold ends."""
     if high < h:
-        status, f = trial_value(drive, workspace, method, loop, k, FORCE, sign, 0.0, high, h)
+        status, f = trial_value(drive, workspace, method, loop, k, FORCE_ROOT, sign, 0.0, high, h)
         if status != OK:
             return status, high, False
         if f > 0.0:
-            return OK, high if high > AT_ONCE * h else h, False
-    status, low, high = go_back(drive, workspace, method, loop, k, FORCE, sign, low, high, h)
+            return OK, high if high > END_OF_STEP * h else h, False
+    status, low, high = go_back(drive, workspace, method, loop, k, FORCE_ROOT, sign, low, high, h)
     if status != OK:
         return status, low, False
-    return find_root(drive, workspace, method, loop, k, FORCE, sign, 0.0, low, high, 0.0, h)
+    return find_root(drive, workspace, method, loop, k, FORCE_ROOT, sign, 0.0, low, high, 0.0, h)
 
 
 @internal
@@ -43,7 +43,7 @@ def _begins_to_close(drive: Any, workspace: Any, method: Any, loop: Any, k: int,
     """(status, size, whether it happens) of the step at which shapes that touch without force begin to close: their
     gap, zero by rounding, says so late, its acceleration says it at once, and where that jumps (a corner is passed)
     just behind."""
-    status, end = trial_value(drive, workspace, method, loop, k, OVERLAP, 1.0, overlap, h, h)
+    status, end = trial_value(drive, workspace, method, loop, k, OVERLAP_ROOT, 1.0, overlap, h, h)
     if status != OK:
         return status, h, True
     none, a, scale = 0.0, vec(workspace.a, workspace.n), vec(workspace.scale, workspace.n)
@@ -53,9 +53,9 @@ def _begins_to_close(drive: Any, workspace: Any, method: Any, loop: Any, k: int,
     none *= PRESSING * vec(workspace.row_scale, workspace.m_ext)[row]
     before = mat(loop.watch, workspace.n_contacts, WATCH)[k, 2]
     if before > -none and vec(workspace.phidd, workspace.m_ext)[row] < -none:
-        return find_root(drive, workspace, method, loop, k, CLOSING, 1.0, none, 0.0, h, 0.0, h)
+        return find_root(drive, workspace, method, loop, k, CLOSING_ROOT, 1.0, none, 0.0, h, 0.0, h)
     if end <= 0.0:
-        return find_root(drive, workspace, method, loop, k, OVERLAP, 1.0, overlap, 0.0, h, 0.0, h)
+        return find_root(drive, workspace, method, loop, k, OVERLAP_ROOT, 1.0, overlap, 0.0, h, 0.0, h)
     return OK, h, True
 
 
@@ -85,18 +85,18 @@ def event_step(drive: Any, workspace: Any, method: Any, loop: Any, k: int, h: fl
             drive, workspace, method, loop, k, sign, low, high, guess, RESOLVED_TIME * size, h
         )
         if status == OK and good and pulls and vec(workspace.monitor, workspace.n_contacts)[k] < 0.0:
-            return find_root(drive, workspace, method, loop, k, FORCE, 1.0, 0.0, 0.0, found, 0.0, h)
+            return find_root(drive, workspace, method, loop, k, FORCE_ROOT, 1.0, 0.0, 0.0, found, 0.0, h)
         if status != OK or good:
             return status, found, good
     if high < h:
-        status, g = trial_value(drive, workspace, method, loop, k, GAP, sign, 0.0, high, h)
+        status, g = trial_value(drive, workspace, method, loop, k, GAP_ROOT, sign, 0.0, high, h)
         if status != OK:
             return status, high, False
         if g > 0.0:
             # the motion is behind its dense output: look where that goes deepest
             low, beyond = high, False
             if low < deepest < h:
-                status, g = trial_value(drive, workspace, method, loop, k, GAP, sign, 0.0, deepest, h)
+                status, g = trial_value(drive, workspace, method, loop, k, GAP_ROOT, sign, 0.0, deepest, h)
                 if status != OK:
                     return status, deepest, False
                 beyond = g <= 0.0
@@ -106,23 +106,23 @@ def event_step(drive: Any, workspace: Any, method: Any, loop: Any, k: int, h: fl
                 high = h
             else:
                 # what the dense output has shown is its own error; the very start of the step is no place to stop at
-                return OK, max(low, deepest) if low > AT_ONCE * h else h, False
-    status, low, high = go_back(drive, workspace, method, loop, k, GAP, sign, low, high, h)
+                return OK, max(low, deepest) if low > END_OF_STEP * h else h, False
+    status, low, high = go_back(drive, workspace, method, loop, k, GAP_ROOT, sign, low, high, h)
     if status != OK:
         return status, low, False
     # one that drifts by rounding may have gone a little beyond what is rounding of the gap
     if mode == OPEN and -UNRESOLVED * size <= start[0] <= overlap:
         status, g = OK, mat(loop.watch, workspace.n_contacts, WATCH)[k, 0]
         if low > 0.0:
-            status, g = trial_value(drive, workspace, method, loop, k, GAP, sign, 0.0, low, h)
+            status, g = trial_value(drive, workspace, method, loop, k, GAP_ROOT, sign, 0.0, low, h)
         if status != OK:
             return status, low, False
         if g <= overlap:
             return _begins_to_close(drive, workspace, method, loop, k, h, max(overlap, 0.5 * overlap - start[0]))
     status, opened, happens = find_root(
-        drive, workspace, method, loop, k, GAP, sign, 0.0, low, high, RESOLVED_TIME * size, h
+        drive, workspace, method, loop, k, GAP_ROOT, sign, 0.0, low, high, RESOLVED_TIME * size, h
     )
     if status == OK and happens and pulls and vec(workspace.monitor, workspace.n_contacts)[k] < 0.0:
         # the gap opens within this step, but the force has become tensile before
-        return find_root(drive, workspace, method, loop, k, FORCE, 1.0, 0.0, 0.0, opened, 0.0, h)
+        return find_root(drive, workspace, method, loop, k, FORCE_ROOT, 1.0, 0.0, 0.0, opened, 0.0, h)
     return status, opened, happens

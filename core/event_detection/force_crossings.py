@@ -19,7 +19,7 @@ from ..state.modes import CLOSED, IDLE, memories_at
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS, VIEW, between, look
-from .root_bounds import SHORTEST
+from .root_bounds import SHORTEST_PART
 
 SAFETY = 2.0
 """How much more than its parabola a force may bend."""
@@ -214,7 +214,7 @@ def sliding_turns(workspace: Any, method: Any, loop: Any, k: int, h: float, none
             bracket = mat(loop.brackets, workspace.n_contacts, BRACKET)[k]
             bracket[0], bracket[1], bracket[2], bracket[HAPPENS] = left[0], right[0], right[0], 1.0
             return True
-        if lowered >= -none or depth > DEPTH or long <= SHORTEST * h:
+        if lowered >= -none or depth > DEPTH or long <= SHORTEST_PART * h:
             left[:] = right
             depth -= 1
             continue

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..contacts.gap_motion_bound3d import TURN
+from ..contacts.gap_motion_bound3d import TURN_BOUND
 
-POINTS = 6
+CONTROL_POINTS = 6
 """Control points of a polynomial of fifth degree."""
-PLANAR, SPATIAL = 3, 7
+PLANAR_BODY, SPATIAL_BODY = 3, 7
 """Coordinates of a body of the plane and of space; the first are those of its place."""
 
 
@@ -42,7 +42,7 @@ def _of_body(state: Any, width: int, body: int, j: int) -> Any:
 def _lengths(points: Any, count: int) -> Any:
     """(length of the way, largest first and second derivative) of a vector with control points (count, 6)."""
     way, first, second = 0.0, 0.0, 0.0
-    for i in range(POINTS - 1):
+    for i in range(CONTROL_POINTS - 1):
         once, twice = 0.0, 0.0
         for j in range(count):
             step = points[j, i + 1] - points[j, i]
@@ -62,7 +62,7 @@ def moves(first: Any, last: Any, width: int, tau: float, points: Any) -> Any:
 
     first, last : coordinates, velocities and accelerations of both bodies, one after the other, at both ends.
     """
-    count, far = 2 if width == PLANAR else 3, 0.0
+    count, far = 2 if width == PLANAR_BODY else 3, 0.0
     points[2, :] = 0.0
     for j in range(count):
         q0, v0, a0 = _of_body(first, width, 0, j)
@@ -70,7 +70,7 @@ def moves(first: Any, last: Any, width: int, tau: float, points: Any) -> Any:
         r0, w0, b0 = _of_body(first, width, 1, j)
         r1, w1, b1 = _of_body(last, width, 1, j)
         control_points(r0 - q0, w0 - v0, b0 - a0, r1 - q1, w1 - v1, b1 - a1, tau, points[j])
-    for i in range(POINTS):
+    for i in range(CONTROL_POINTS):
         far = max(far, math.sqrt(points[0, i] ** 2 + points[1, i] ** 2 + points[2, i] ** 2))
     way, once, twice = _lengths(points, count)
     return way, once, twice, far
@@ -79,13 +79,13 @@ def moves(first: Any, last: Any, width: int, tau: float, points: Any) -> Any:
 @internal
 def turns(first: Any, last: Any, width: int, tau: float, body: int) -> Any:
     """(way of the end of a unit vector that turns with a body, T_1, T_2)."""
-    begin, count = (2, 1) if width == PLANAR else (3, 4)
-    points = np.empty((4, POINTS))
+    begin, count = (2, 1) if width == PLANAR_BODY else (3, 4)
+    points = np.empty((4, CONTROL_POINTS))
     for j in range(count):
         q0, v0, a0 = _of_body(first, width, body, begin + j)
         q1, v1, a1 = _of_body(last, width, body, begin + j)
         control_points(q0, v0, a0, q1, v1, a1, tau, points[j])
     way, once, twice = _lengths(points, count)
-    if width == PLANAR:
+    if width == PLANAR_BODY:
         return way, once, twice + once * once
-    return TURN * way, TURN * once, TURN * (twice + once * once)
+    return TURN_BOUND * way, TURN_BOUND * once, TURN_BOUND * (twice + once * once)

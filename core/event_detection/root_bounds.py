@@ -20,23 +20,23 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..contacts.cable_line import BOTH as CABLE_BOTH
-from ..contacts.cable_line import LENGTH as CABLE_LENGTH
-from ..contacts.cable_line import POINT as CABLE_POINT
-from ..contacts.cable_line import VECTORS
+from ..contacts.cable_line import LINE_LENGTH as CABLE_LENGTH
+from ..contacts.cable_line import LINE_POINT as CABLE_POINT
+from ..contacts.cable_line import LINE_RADII as CABLE_BOTH
+from ..contacts.cable_line import LINE_VECTORS
 from ..contacts.gap_motion_bound3d import way_of_cable, way_of_sphere
 from ..contacts.geometry_kinds import CABLE, CABLE_IN_SPACE, EQUATIONS, JOINT, LINE, LINEAR, OWN, SPHERE, STOP, TURN
-from ..contacts.line2d import BOTH as LINE_BOTH
-from ..contacts.line2d import NODES, POINTS
-from ..contacts.mesh_nearest3d import OPEN
+from ..contacts.line2d import CURVE_POINTS, PIECE_NODES
+from ..contacts.line2d import CURVE_RADII as LINE_BOTH
+from ..contacts.mesh_nearest3d import OPEN_SURFACE
 from ..contacts.moving_point3d import ON_MESH
-from ..contacts.normal3d import KIND as SHAPES
+from ..contacts.normal3d import GAP_KIND as SHAPES
 from ..contacts.normal3d import RADIUS_A, RADIUS_B
-from .contact_evaluation import KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
-from .motion_bounds import PLANAR, control_points
-from .separation import NODE, STATE, arms, stays_apart, width_of
+from .contact_evaluation import NEAR_KIND, NEAR_SIZE, VIEW, look, probe_of, state_of_pair
+from .motion_bounds import PLANAR_BODY, control_points
+from .separation import NODE, NODE_MOTION, arms, stays_apart, width_of
 
-SHORTEST = 2.0**-34
+SHORTEST_PART = 2.0**-34
 """Of the step: what a gap does in a shorter part cannot be told from a touch."""
 MOST_LOOKS = 20_000
 """Parts of one step, for the gap of one contact."""
@@ -52,7 +52,7 @@ BENDS = 4.0
 def way_of_gap(workspace: Any, loop: Any, k: int, fastest: int) -> float:
     """An upper bound of how far the gap of contact k goes within the step, or (fastest = 1) of its greatest rate times
     the step; infinite where none is known."""
-    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KIND]
     if kind == EQUATIONS or kind == OWN:
         return np.inf
     batch, way = probe_of(loop, k), mat(loop.travel, 2, workspace.n_ext)[fastest]
@@ -66,7 +66,7 @@ def way_of_gap(workspace: Any, loop: Any, k: int, fastest: int) -> float:
         return total
     if kind == TURN:
         return way[coord[0, 2]] + way[coord[0, 5]]
-    if width_of(kind) == PLANAR:
+    if width_of(kind) == PLANAR_BODY:
         first, second, point, _ = arms(kind, par[0])
         c = coord[0]
         total = way[c[0]] + way[c[1]] + way[c[3]] + way[c[4]] + second * way[c[5]]
@@ -82,10 +82,10 @@ def way_of_gap(workspace: Any, loop: Any, k: int, fastest: int) -> float:
     largest = 0.0
     if kind == LINE:
         for e in range(batch.count):
-            for node in range(NODES):
-                c, u = coord[e, 3 * node : 3 * node + 3], par[e, POINTS + 2 * node : POINTS + 2 * node + 2]
+            for node in range(PIECE_NODES):
+                c, u = coord[e, 3 * node : 3 * node + 3], par[e, CURVE_POINTS + 2 * node : CURVE_POINTS + 2 * node + 2]
                 largest = max(largest, way[c[0]] + way[c[1]] + math.hypot(u[0], u[1]) * way[c[2]])
-        c, u = coord[0, 3 * NODES :], par[0, POINTS + 2 * NODES :]
+        c, u = coord[0, 3 * PIECE_NODES :], par[0, CURVE_POINTS + 2 * PIECE_NODES :]
         return largest + way[c[0]] + way[c[1]] + math.hypot(u[0], u[1]) * way[c[2]]
     for e in range(batch.count):
         for end in range(2):
@@ -93,7 +93,7 @@ def way_of_gap(workspace: Any, loop: Any, k: int, fastest: int) -> float:
             # the inner control point of the cubic
             third = par[e, CABLE_LENGTH] / 3.0
             largest = max(largest, way[c[0]] + way[c[1]] + third * (way[c[2]] + way[c[3]]))
-    c, u = coord[0, 2 * VECTORS :], par[0, CABLE_POINT:]
+    c, u = coord[0, 2 * LINE_VECTORS :], par[0, CABLE_POINT:]
     return largest + way[c[0]] + way[c[1]] + math.hypot(u[0], u[1]) * way[c[2]]
 
 
@@ -108,7 +108,9 @@ def _thickness(loop: Any, k: int, kind: int) -> float:
         both = par[LINE_BOTH if kind == LINE else CABLE_BOTH]
     else:
         both = par[RADIUS_A] + par[RADIUS_B]
-    if kind == SPHERE and (int(par[SHAPES]) != ON_MESH or imat(batch.extra, batch.count, batch.nextra)[0, OPEN] == 0):
+    if kind == SPHERE and (
+        int(par[SHAPES]) != ON_MESH or imat(batch.extra, batch.count, batch.nextra)[0, OPEN_SURFACE] == 0
+    ):
         return np.inf
     # edges that cross are apart again behind: the dip is as deep as they are round
     return THICK * both if both > 0.0 else np.inf
@@ -173,7 +175,7 @@ def _place(workspace: Any, method: Any, loop: Any, k: int, kind: int, row: int, 
     node[0] = s
     look(workspace, method, loop, k, row, h, s, node[1 : 1 + VIEW])
     if width_of(kind) > 0:
-        state_of_pair(workspace, method, loop, k, width_of(kind), h, s, node[STATE:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, s, node[NODE_MOTION:])
 
 
 @internal
@@ -195,7 +197,7 @@ def first_root(
     slack : up to here a gap below zero is none, m. bracket (3,) gets, in parts of the step, the place before the first
     root, one beyond it, and the deepest one after it.
     """
-    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND]
+    kind = imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KIND]
     row = ivec(workspace.contact_rows, workspace.n_contacts)[k]
     stack, rests, left, half = np.zeros((DEPTH, NODE)), np.empty(DEPTH), np.zeros(NODE), np.empty(7)
     right = stack[0]
@@ -207,8 +209,8 @@ def first_root(
         vec(workspace.phidd, workspace.m_ext)[row],
     )
     if width_of(kind) > 0:
-        state_of_pair(workspace, method, loop, k, width_of(kind), h, 0.0, left[STATE:])
-        state_of_pair(workspace, method, loop, k, width_of(kind), h, 1.0, right[STATE:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, 0.0, left[NODE_MOTION:])
+        state_of_pair(workspace, method, loop, k, width_of(kind), h, 1.0, right[NODE_MOTION:])
     # per second, for the whole step: of lines, whose nodes are many, and of thin edges
     speed, thick = np.inf, _thickness(loop, k, kind)
     if kind == LINE or kind == CABLE or kind == CABLE_IN_SPACE or thick < np.inf:
@@ -223,12 +225,12 @@ def first_root(
         excluded, falls, dips = _excluded(
             workspace, method, loop, k, kind, row, h, left, right, sign, slack, speed, thick, rest
         )  # fmt: skip
-        if not beyond and (excluded or (long <= SHORTEST and not dips) or looks > MOST_LOOKS):
+        if not beyond and (excluded or (long <= SHORTEST_PART and not dips) or looks > MOST_LOOKS):
             left[:] = right
             above = left[0] if sign * left[1] > 0.0 else above
             depth -= 1
             continue
-        if (beyond and falls) or long <= SHORTEST or depth == DEPTH:
+        if (beyond and falls) or long <= SHORTEST_PART or depth == DEPTH:
             bracket[0], bracket[1] = above, right[0]
             _deepen(workspace, method, loop, k, kind, row, h, sign, bracket)
             return True
@@ -251,7 +253,7 @@ def _deepen(
 ) -> None:
     """bracket[2] = the place beyond the root where the gap turns again, or the end of the step."""
     view, low = np.empty(VIEW), bracket[1]
-    reach = max(bracket[1] - bracket[0], SHORTEST)
+    reach = max(bracket[1] - bracket[0], SHORTEST_PART)
     bracket[2] = 1.0
     if low >= 1.0:
         return

@@ -16,7 +16,7 @@ from ..methods.history import history_time
 from ..rounding import NO_STEP, RESOLVED_TIME, SAME_INSTANT, SAME_TRIAL
 from ..state.workspace_records import OK
 from .contact_evaluation import VIEW, look
-from .trial_steps import FORCE, GAP, OVERLAP, make_trial, trial_value
+from .trial_steps import FORCE_ROOT, GAP_ROOT, OVERLAP_ROOT, make_trial, trial_value
 
 MAX_TRIALS, MOST_HALVINGS, MOST_LOOKS, MOST_NEWTON = 60, 40, 60, 6
 JUMP = 1e-6
@@ -91,7 +91,7 @@ def find_root(
         else:
             x_high, f_high = x, f
         width, least = x_high - x_low, max(RESOLVED_TIME * abs(x_high), resolved)
-        if width <= least or (what == FORCE and _jumps_behind(x_low, width, f_low, f_high, largest, full)):
+        if width <= least or (what == FORCE_ROOT and _jumps_behind(x_low, width, f_low, f_high, largest, full)):
             break
         slow = trials >= 3 and width > 0.5 * third
         third, second, first = second, first, width
@@ -111,18 +111,18 @@ def find_root(
         last_x, last_f = x, f
         x = proposal
     # a gap below zero by rounding that nothing closes would pass the same limit again
-    at_row = what == FORCE and x_low == 0.0 and np.isnan(f_low)
+    at_row = what == FORCE_ROOT and x_low == 0.0 and np.isnan(f_low)
     # what may jump from next to nothing (right behind the newest row, nothing else is known of it): a gap does not
-    jumps = f_low > JUMP * largest or (what != GAP and f_high < -JUMP * largest)
-    if (jumps or what == OVERLAP) and not np.isnan(f_high):
-        if what == FORCE and x_low > 10.0 * SHORT * full:
+    jumps = f_low > JUMP * largest or (what != GAP_ROOT and f_high < -JUMP * largest)
+    if (jumps or what == OVERLAP_ROOT) and not np.isnan(f_high):
+        if what == FORCE_ROOT and x_low > 10.0 * SHORT * full:
             # a step takes what is at its end for a part of all of it: let the one over the jump be short
             x = x_low - SHORT * full
             _keep_nearest(nearest, x_low, x_high, x, False)
             return make_trial(drive, workspace, method, loop, x, full), x, False
         # clearly behind it: rounding must not take back what has been passed (at the row nothing has been)
         behind = CLEARLY * resolved if at_row else max(0.1 * SHORT * full, CLEARLY * resolved)
-        x = min(x_high + behind, full) if what == FORCE else x_high
+        x = min(x_high + behind, full) if what == FORCE_ROOT else x_high
     elif x_low > low:
         # the side past the event would be found again as a crossing: end on the safe one
         x = x_low
@@ -163,7 +163,7 @@ def root_by_rate(
     """
     row, x = ivec(workspace.contact_rows, workspace.n_contacts)[k], guess
     for _ in range(MOST_NEWTON):
-        status, g = trial_value(drive, workspace, method, loop, k, GAP, sign, 0.0, x, full)
+        status, g = trial_value(drive, workspace, method, loop, k, GAP_ROOT, sign, 0.0, x, full)
         if status != OK:
             return status, x, False
         rate = sign * vec(workspace.phid, workspace.m_ext)[row]

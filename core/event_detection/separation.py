@@ -22,25 +22,25 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat
 from ..contacts.geometry_kinds import DISKS, OUTLINE, PLANE, RING, ROPE, SEGMENT, SPHERE, STOP
-from ..contacts.mesh_nearest3d import OPEN
+from ..contacts.mesh_nearest3d import OPEN_SURFACE
 from ..contacts.moving_point3d import HOLLOW, ON_MESH, ON_RING, on_plane
-from ..contacts.normal3d import EXTENT_A, EXTENT_B, PAIR, RADIUS_A, RADIUS_B, TILT
-from ..contacts.normal3d import KIND as SHAPES
+from ..contacts.normal3d import EXTENT_A, EXTENT_B, PAIR_AT, RADIUS_A, RADIUS_B, TILT
+from ..contacts.normal3d import GAP_KIND as SHAPES
 from ..contacts.parallel_axes3d import BACK, STEEPEST
-from ..contacts.scalar_contact2d import FIRST
-from ..contacts.stop3d import LIMIT, SIGN
+from ..contacts.scalar_contact2d import FIRST_PARAMETER
+from ..contacts.stop3d import STOP_LIMIT, STOP_SIGN
 from ..elements.measure3d import ANGLE, DISTANCE, POINT_A, POINT_B
 from ..methods.history import history_time
 from .contact_evaluation import look, probe_of, rate_alone
-from .motion_bounds import PLANAR, POINTS, SPATIAL, moves, turns
+from .motion_bounds import CONTROL_POINTS, PLANAR_BODY, SPATIAL_BODY, moves, turns
 
 BOTH, LENGTH = 5, 16
 """Columns of the parameters: sum of the radii of disks and segments, and a segment's length."""
-SECOND_MARKER, NUMBERS = FIRST + 5, FIRST + 10
+SECOND_MARKER, NUMBERS = FIRST_PARAMETER + 5, FIRST_PARAMETER + 10
 """Columns of the parameters of contacts from formulas: of the second marker, and of the first number."""
-AT, STATE = 0, 4
+NODE_PLACE, NODE_MOTION = 0, 4
 """Columns of a node: its place in the step, followed by the gap with its two derivatives; and the bodies' motion."""
-NORMAL = STATE + 6 * SPATIAL
+NORMAL = NODE_MOTION + 6 * SPATIAL_BODY
 KNOWN = NORMAL + 3
 NODE = KNOWN + 1
 """And the gap's gradient by the place of the second body, with 1 where that has been asked for."""
@@ -50,9 +50,9 @@ NODE = KNOWN + 1
 def width_of(kind: int) -> int:
     """Coordinates of each body, 0 for kinds that are no two rigid shapes."""
     if kind == SPHERE or kind == STOP:
-        return SPATIAL
+        return SPATIAL_BODY
     rigid = kind == DISKS or kind == PLANE or kind == SEGMENT or kind == OUTLINE
-    return PLANAR if rigid or kind == RING or kind == ROPE else 0
+    return PLANAR_BODY if rigid or kind == RING or kind == ROPE else 0
 
 
 @internal
@@ -64,11 +64,11 @@ def arms(kind: int, par: Any) -> Any:
         arm = arm if kind == DISKS else (arm + par[LENGTH] if kind == SEGMENT else math.inf)
         return arm, math.hypot(par[2], par[3]), kind == DISKS, 0.0
     if kind == OUTLINE or kind == RING or kind == ROPE:
-        arm = math.inf if kind == OUTLINE else math.hypot(par[FIRST], par[FIRST + 1])
+        arm = math.inf if kind == OUTLINE else math.hypot(par[FIRST_PARAMETER], par[FIRST_PARAMETER + 1])
         return arm, math.hypot(par[SECOND_MARKER], par[SECOND_MARKER + 1]), kind != OUTLINE, 0.0
-    at, shape = PAIR + POINT_A, int(par[SHAPES])
+    at, shape = PAIR_AT + POINT_A, int(par[SHAPES])
     a = math.sqrt(par[at] ** 2 + par[at + 1] ** 2 + par[at + 2] ** 2) + par[EXTENT_A]
-    at = PAIR + POINT_B
+    at = PAIR_AT + POINT_B
     b = math.sqrt(par[at] ** 2 + par[at + 1] ** 2 + par[at + 2] ** 2) + par[EXTENT_B]
     if kind == STOP and shape == ANGLE:
         # rad: of a joint's axis, on which both bodies turn
@@ -90,7 +90,7 @@ def curvature(kind: int, batch: Any, g: float, sign: float) -> float:
     elif kind == ROPE:
         outwards, distance = not outwards, par[NUMBERS] - g
     elif kind == STOP and int(par[SHAPES]) == DISTANCE:
-        outwards, distance = outwards == (par[SIGN] < 0.0), par[LIMIT] - par[SIGN] * g
+        outwards, distance = outwards == (par[STOP_SIGN] < 0.0), par[STOP_LIMIT] - par[STOP_SIGN] * g
     elif kind == SPHERE and not on_plane(int(par[SHAPES])):
         shape = int(par[SHAPES])
         distance = g + par[RADIUS_A] + par[RADIUS_B]
@@ -99,7 +99,7 @@ def curvature(kind: int, batch: Any, g: float, sign: float) -> float:
         elif outwards and shape == ON_RING:
             # towards its axis the distance from a circle bends the other way
             outwards, distance = False, par[EXTENT_A] - distance
-        elif outwards and shape == ON_MESH and imat(batch.extra, batch.count, batch.nextra)[0, OPEN] != 0:
+        elif outwards and shape == ON_MESH and imat(batch.extra, batch.count, batch.nextra)[0, OPEN_SURFACE] != 0:
             # a part of a surface, or edges, are no convex set
             return math.inf
     if outwards or distance == math.inf:
@@ -118,7 +118,7 @@ def _find_normal(
     angle none."""
     if node[KNOWN] != 0.0:
         return
-    batch, s = probe_of(loop, k), node[AT]
+    batch, s = probe_of(loop, k), node[NODE_PLACE]
     coord = imat(batch.coord, batch.count, batch.ncoord)[0]
     node[KNOWN] = 1.0
     node[NORMAL : NORMAL + 3] = 0.0
@@ -126,7 +126,7 @@ def _find_normal(
         return
     view = np.empty(3)
     look(workspace, method, loop, k, row, h, s, view)
-    for i in range(2 if width == PLANAR else 3):
+    for i in range(2 if width == PLANAR_BODY else 3):
         at = coord[width + i]
         # what is fixed to the ground has no coordinates to move
         other = at >= workspace.n
@@ -150,10 +150,10 @@ def stays_apart(
 ) -> Any:
     """(is `sign` times the gap over -slack all the way between two nodes, is that known where it is so, how far it can
     bend there, m), of two rigid shapes."""
-    width, batch, tau = width_of(kind), probe_of(loop, k), (right[AT] - left[AT]) * h
-    par, place = mat(batch.par, batch.count, batch.npar)[0], np.empty((3, POINTS))
+    width, batch, tau = width_of(kind), probe_of(loop, k), (right[NODE_PLACE] - left[NODE_PLACE]) * h
+    par, place = mat(batch.par, batch.count, batch.npar)[0], np.empty((3, CONTROL_POINTS))
     arm_a, arm_b, point, extent = arms(kind, par)
-    first, last = left[STATE:], right[STATE:]
+    first, last = left[NODE_MOTION:], right[NODE_MOTION:]
     way, fast, bends, far = moves(first, last, width, tau, place)
     way_a, turn_a, bend_a = turns(first, last, width, tau, 0)
     way_b, turn_b, bend_b = turns(first, last, width, tau, 1)
@@ -182,10 +182,10 @@ def stays_apart(
         _find_normal(workspace, method, loop, k, kind, width, row, h, node)
         g, rate = sign * node[1], sign * tau * (node[2] if end == 0 else -node[2])
         n = node[NORMAL : NORMAL + 3]
-        start, lowest, along = 0 if end == 0 else POINTS - 1, g, 0.0
+        start, lowest, along = 0 if end == 0 else CONTROL_POINTS - 1, g, 0.0
         square = (rest + bent * speed * speed) / 20.0
-        for i in range(1, POINTS):
-            at = i if end == 0 else POINTS - 1 - i
+        for i in range(1, CONTROL_POINTS):
+            at = i if end == 0 else CONTROL_POINTS - 1 - i
             goes = 0.0
             for j in range(3):
                 goes += sign * n[j] * (place[j, at] - place[j, start])

@@ -14,7 +14,7 @@ from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
 from .crossings import friction_margin, no_sliding
 
 # what is searched for a root
-GAP, FORCE, OVERLAP, CLOSING = range(4)
+GAP_ROOT, FORCE_ROOT, OVERLAP_ROOT, CLOSING_ROOT = range(4)
 
 
 @internal
@@ -70,9 +70,9 @@ def trial_value(
     if status != OK:
         return status, 0.0
     row = ivec(workspace.contact_rows, workspace.n_contacts)[k]
-    if what == GAP or what == OVERLAP:
+    if what == GAP_ROOT or what == OVERLAP_ROOT:
         return OK, sign * vec(workspace.phi, workspace.m_ext)[row] + slack
-    if what == CLOSING:
+    if what == CLOSING_ROOT:
         return OK, vec(workspace.phidd, workspace.m_ext)[row] + slack
     memory = memories_at(workspace.memory, workspace.n_contacts)[k]
     force, strongest = (

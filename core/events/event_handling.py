@@ -29,12 +29,12 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
 from .breakpoint import pass_breakpoint
-from .impact_law_codes import FORCE, MASSLESS
+from .impact_law_codes import AT_MASSLESS, BY_FORCE
 from .inconsistent_modes import find_pending, find_unsettled
 from .massless import settle_massless
 from .mode_selection import decide
-from .progress import AT_ONCE, GUARD_SIZE, IN_A_ROW, SINCE, STANDSTILL, START
-from .progress import COUNT as GUARDED
+from .progress import COUNTED_SINCE, GUARD_SIZE, IN_A_ROW, MOST_AT_ONCE, RUN_BEGAN, STANDSTILL
+from .progress import EVENTS_COUNTED as GUARDED
 from .records import DECLINED, NO_IMPACT, NOT_MET, SETTLED, call_part, clear, copy, scalars
 from .report import MOST_EVENTS, report_not_found, room_for
 from .zeno import MANY_TOUCH, count_instant, may_push
@@ -147,7 +147,7 @@ def _settle_forces_where_they_are(instant: Any, drive: Any, workspace: Any, meth
     evaluate_energy(workspace)
     more = energy[0] + energy[1] + energy[2]
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE and pending[k] != 0:
+        if law[k] == BY_FORCE and pending[k] != 0:
             count += 1
             more += memory[k].loss_jump
     status = int(call_part(instant.settle_forces, instant, drive, workspace, method))
@@ -156,10 +156,10 @@ def _settle_forces_where_they_are(instant: Any, drive: Any, workspace: Any, meth
     evaluate_energy(workspace)
     more -= energy[0] + energy[1] + energy[2]
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE and pending[k] != 0:
+        if law[k] == BY_FORCE and pending[k] != 0:
             more -= memory[k].loss_jump
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE and pending[k] != 0:
+        if law[k] == BY_FORCE and pending[k] != 0:
             memory[k].loss_jump += more / count
     return status
 
@@ -246,7 +246,7 @@ def _any_force(drive: Any, workspace: Any) -> bool:
     """True if a contact with a force law is pending."""
     law, pending = ivec(drive.law, workspace.n_contacts), ivec(drive.pending, workspace.n_contacts)
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE and pending[k] != 0:
+        if law[k] == BY_FORCE and pending[k] != 0:
             return True
     return False
 
@@ -256,7 +256,7 @@ def _any_constraint(drive: Any, workspace: Any) -> bool:
     """True if a contact constraint with mass on both sides is pending."""
     law, pending = ivec(drive.law, workspace.n_contacts), ivec(drive.pending, workspace.n_contacts)
     for k in range(workspace.n_contacts):
-        if pending[k] != 0 and law[k] != MASSLESS and law[k] != FORCE:
+        if pending[k] != 0 and law[k] != AT_MASSLESS and law[k] != BY_FORCE:
             return True
     return False
 
@@ -265,11 +265,11 @@ def _any_constraint(drive: Any, workspace: Any) -> bool:
 def _gets_on(drive: Any, t: float) -> bool:
     """False if the guard against runs that events keep from going on would speak (`events/progress.py`)."""
     goals, counts, guard = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
-    if t == goals[HANDLED_AT] and counts[HERE] >= AT_ONCE:
+    if t == goals[HANDLED_AT] and counts[HERE] >= MOST_AT_ONCE:
         return False
     if guard[GUARDED] < IN_A_ROW:
         return True
-    return abs(t - guard[SINCE]) > STANDSTILL * abs(t - guard[START])
+    return abs(t - guard[COUNTED_SINCE]) > STANDSTILL * abs(t - guard[RUN_BEGAN])
 
 
 @internal
@@ -279,7 +279,7 @@ def _count(drive: Any, t: float) -> None:
     counts[HANDLED] += 1
     guard[GUARDED] += 1.0
     if guard[GUARDED] > IN_A_ROW:
-        guard[SINCE], guard[GUARDED] = t, 0.0
+        guard[COUNTED_SINCE], guard[GUARDED] = t, 0.0
 
 
 @internal

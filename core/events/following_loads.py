@@ -13,8 +13,8 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
 from ..contacts.geometry_kinds import JOINT
-from ..contacts.joint_friction_contact import GAIN, OWN_ROWS
-from ..event_detection.contact_evaluation import KERNEL, KIND, NEAR_SIZE, probe_of
+from ..contacts.joint_friction_contact import OWN_ROWS, SLIDE_GAIN
+from ..event_detection.contact_evaluation import NEAR_KERNEL, NEAR_KIND, NEAR_SIZE, probe_of
 from ..rounding import LOADS_SETTLED
 from .rates import solve_cone_problem
 from .records import scalars
@@ -32,9 +32,9 @@ def own_rows(workspace: Any, k: int) -> int:
 def _follows(instant: Any, workspace: Any, loop: Any, i: int) -> bool:
     """True if the load of touching contact i follows the force of a joint."""
     k = ivec(instant.contacts, instant.most)[i]
-    return imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KIND] == JOINT and probe_of(loop, k).nrow > own_rows(
-        workspace, k
-    )
+    return imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KIND] == JOINT and probe_of(
+        loop, k
+    ).nrow > own_rows(workspace, k)
 
 
 @internal
@@ -57,11 +57,13 @@ def _load_of(workspace: Any, loop: Any, k: int, change: Any) -> float:
         for i in range(workspace.m_act):
             if active[i] == rows[j]:
                 own[rows[j]] += change[workspace.n + i]
-    call_kernel(imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, KERNEL], RESIDUAL, vec(workspace.t, 1)[0], batch)
+    call_kernel(
+        imat(loop.near, workspace.n_contacts, NEAR_SIZE)[k, NEAR_KERNEL], RESIDUAL, vec(workspace.t, 1)[0], batch
+    )
     for j in range(own_rows(workspace, k), batch.nrow):
         own[rows[j]] = 0.0
     stop = coord[batch.ncoord - 1 if in_space(workspace, k) else 0]
-    return float(vec(batch.par, batch.npar)[GAIN] * r[stop])
+    return float(vec(batch.par, batch.npar)[SLIDE_GAIN] * r[stop])
 
 
 @internal

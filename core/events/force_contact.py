@@ -14,7 +14,7 @@ from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, GAP_ROUNDING, LE
 from ..state.modes import ACTIVE, OPEN, RELEASED, memories_at
 from ..state.run_records import CLOCK_SIZE, CLOSE, FORCE_NUMBERS, OPENS, STEP_SIZE, call_accelerations, loop_at
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from .impact_law_codes import FORCE
+from .impact_law_codes import BY_FORCE
 from .records import NO_ACCELERATIONS, SETTLED, call_part, delassus, scalars
 from .report import report
 
@@ -31,7 +31,7 @@ def settle_forces(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
         ivec(drive.pending, workspace.n_contacts),
     )
     for k in range(workspace.n_contacts):
-        if law[k] != FORCE or pending[k] == 0:
+        if law[k] != BY_FORCE or pending[k] == 0:
             continue
         if memories_at(workspace.memory, workspace.n_contacts)[k].mode == OPEN:
             status = _begin(instant, drive, workspace, method, loop, k)

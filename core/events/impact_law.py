@@ -10,8 +10,8 @@ from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, vec
 from ..rounding import UNSOLVED
 from ..state.run_records import LOOP_TYPE
-from .impact_law_codes import POISSON, SEQUENTIAL
-from .impact_retries import FIRST, MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, OF_ALL, restitution, strikes_anew
+from .impact_law_codes import BY_NEWTON_IN_TURN, BY_POISSON
+from .impact_retries import ALL_ROUNDS, FIRST_ROUND, MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution, strikes_anew
 from .rates import masses, push, read_all_rates
 from .records import ENDLESS_BLOWS, ENDLESS_ROUNDS, NO_IMPACT, SETTLED, scalars, touching
 from .spin_impulses import any_spins, find_spins, push_spins, solve_blow, strike_spinning
@@ -42,7 +42,8 @@ def strike(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     largest, left, sequential = 0.0, math.inf, False
     for i in range(count):
         sequential = (
-            sequential or ivec(drive.law, workspace.n_contacts)[ivec(instant.contacts, instant.most)[i]] == SEQUENTIAL
+            sequential
+            or ivec(drive.law, workspace.n_contacts)[ivec(instant.contacts, instant.most)[i]] == BY_NEWTON_IN_TURN
         )
         contact[i].impact_impulse = contact[i].impact_friction = loss[i] = 0.0
         contact[i].approach_speed = max(-rate[i], 0.0)
@@ -63,7 +64,7 @@ def strike(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
             contact[i].approach_speed = approach if approach > rounding[i] else -rate[i]
             before_n[i], before_t[i], before_s[i] = rate[i], slide[i], sway[i]
             contact[i].spin_rate_before = contact[i].spin_rate
-        attempt, anew = FIRST, True
+        attempt, anew = FIRST_ROUND, True
         while anew:
             for i in range(count):
                 contact[i].spin_impulse = 0.0
@@ -71,7 +72,7 @@ def strike(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
             status = (
                 _sequence(instant, drive, workspace)
                 if sequential
-                else _blow(instant, drive, workspace, last, attempt == OF_ALL)
+                else _blow(instant, drive, workspace, last, attempt == ALL_ROUNDS)
             )
             lost = 0.0
             for i in range(count):
@@ -134,7 +135,7 @@ def _blow(instant: Any, drive: Any, workspace: Any, last: bool, every: bool) -> 
     for phase in range(2):
         b, p = vec(instant.space_b, 3 * count), vec(instant.space_p, 3 * count)
         for i in range(count):
-            poisson = law[contacts[i]] == POISSON
+            poisson = law[contacts[i]] == BY_POISSON
             e = 0.0 if last else restitution(instant, low, i)
             back = back or (part[i] != 0.0 and poisson and e > 0.0)
             if phase == 1:

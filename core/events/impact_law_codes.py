@@ -3,7 +3,7 @@
 from ..errors import ModelError
 from ..laws import ForceLaw, ImpactLaw, NewtonImpact, PoissonImpact
 
-FORCE, MASSLESS, NEWTON, POISSON, SEQUENTIAL = range(5)
+BY_FORCE, AT_MASSLESS, BY_NEWTON, BY_POISSON, BY_NEWTON_IN_TURN = range(5)
 """Not at all, since it is a force, or at a massless end; by Newton's law at once, by Poisson's, or by Newton's one blow
 after another."""
 
@@ -16,11 +16,11 @@ def code_of(law: ImpactLaw | ForceLaw, massless: bool) -> int:
     ModelError : for another law.
     """
     if isinstance(law, ForceLaw):
-        return FORCE
+        return BY_FORCE
     if massless:
-        return MASSLESS
+        return AT_MASSLESS
     if isinstance(law, NewtonImpact):
-        return NEWTON if law.propagation == "simultaneous" else SEQUENTIAL
+        return BY_NEWTON if law.propagation == "simultaneous" else BY_NEWTON_IN_TURN
     if isinstance(law, PoissonImpact):
-        return POISSON
+        return BY_POISSON
     raise ModelError(f"impact law {type(law).__name__} is not known: give NewtonImpact or PoissonImpact")

@@ -8,7 +8,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import ENERGY_GAIN
-from .impact_law_codes import POISSON
+from .impact_law_codes import BY_POISSON
 from .records import SETTLED, scalars, touching
 
 MOST_BLOWS = 100_000
@@ -16,16 +16,16 @@ MOST_BLOWS = 100_000
 MOST_BOUNCES, MOST_ROUNDS = 50, 2000
 """Of impacts at one instant, each of the contacts that approach then: with restitution, and at all. Contacts that slide
 fast can feed bounces that go to and fro between the others and do not become lower."""
-FIRST, OF_ALL = range(2)
+FIRST_ROUND, ALL_ROUNDS = range(2)
 """Attempts at the first round of an impact."""
 
 
 @internal
 def strikes_anew(instant: Any, drive: Any, workspace: Any, status: int, attempt: int, lost: float) -> bool:
-    """True if the first round of an impact is undone, for the next attempt at it: FIRST, where a contact that separated
-    beforehand approaches now; OF_ALL, where impulses of all contacts are not found or raise the energy (`lost` < 0, J).
-    The third, with the impulses of FIRST, is the first of some rounds, and so is FIRST where Poisson's law takes part,
-    which speaks of the impulses of each round."""
+    """True if the first round of an impact is undone, for the next attempt at it: FIRST_ROUND, where a contact that
+    separated beforehand approaches now; ALL_ROUNDS, where impulses of all contacts are not found or raise the energy
+    (`lost` < 0, J). The third, with the impulses of FIRST_ROUND, is the first of some rounds, and so is FIRST_ROUND
+    where Poisson's law takes part, which speaks of the impulses of each round."""
     contact = touching(instant)
     count, part, rate, rounding = (
         scalars(instant).count,
@@ -33,13 +33,16 @@ def strikes_anew(instant: Any, drive: Any, workspace: Any, status: int, attempt:
         contact.gap_rate,
         contact.rate_rounding,
     )
-    poisson, anew = 0, attempt == OF_ALL and (status != SETTLED or lost < -ENERGY_GAIN * vec(workspace.energy, 3)[0])
-    scalars(instant).in_rounds = 1 if attempt > OF_ALL or anew else 0
-    if attempt == FIRST and status == SETTLED:
+    poisson, anew = (
+        0,
+        attempt == ALL_ROUNDS and (status != SETTLED or lost < -ENERGY_GAIN * vec(workspace.energy, 3)[0]),
+    )
+    scalars(instant).in_rounds = 1 if attempt > ALL_ROUNDS or anew else 0
+    if attempt == FIRST_ROUND and status == SETTLED:
         for i in range(count):
             anew = anew or (part[i] == 0.0 and rate[i] < -rounding[i])
         for i in range(count):
-            poisson += ivec(drive.law, workspace.n_contacts)[ivec(instant.contacts, instant.most)[i]] == POISSON
+            poisson += ivec(drive.law, workspace.n_contacts)[ivec(instant.contacts, instant.most)[i]] == BY_POISSON
         if anew and poisson > 0:
             scalars(instant).in_rounds = 1 if poisson < count else 0
             anew = False

@@ -14,7 +14,7 @@ from .records import SETTLED, call_part, clear, scalars, touching
 from .turning_rows import TURNING_ROWS, find_turning_rows
 from .zeno import near_level
 
-INVERSE, TAKES, BEFORE, OFF, P, ARM = range(6)
+ROW_INVERSE, TAKES, BEFORE, OFF, P, ROW_ARM = range(6)
 """Of each row: its inverse mass, the same or 0 where it takes no impulse, its rate before, that without impulses less
 what is wanted, its impulse, and how far that may go, in parts of the normal one."""
 ROW_NUMBERS = 6
@@ -53,7 +53,7 @@ def open_rows(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     for i in range(count):
         memories_at(workspace.memory, workspace.n_contacts)[contacts[i]].closed_gap = 0.0
     rows = rows_of(instant, workspace)
-    arms = part(instant, rows, ARM)
+    arms = part(instant, rows, ROW_ARM)
     for r in range(count, 3 * count):
         arms[r] = vec(drive.friction, workspace.n_contacts)[contacts[r % count]]
     if rows > 3 * count:
@@ -90,7 +90,7 @@ def prepare_rows(instant: Any, workspace: Any, h: float) -> None:
         vec(instant.bounced, n),
     )
     inverse, takes, rate, p = (
-        part(instant, rows, INVERSE),
+        part(instant, rows, ROW_INVERSE),
         part(instant, rows, TAKES),
         part(instant, rows, BEFORE),
         part(instant, rows, P),

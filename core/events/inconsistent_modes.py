@@ -10,7 +10,7 @@ from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..state.modes import CLOSED, memories_at
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
-from .impact_law_codes import MASSLESS
+from .impact_law_codes import AT_MASSLESS
 from .rates import read_level
 from .reading import comes_back
 from .records import NO_ACCELERATIONS, SETTLED, WANT_MEMORY, call_part, scalars, touching
@@ -62,7 +62,7 @@ def find_pending(instant: Any, drive: Any, workspace: Any, method: Any, loop: An
     if not find_unsettled(instant, workspace, found):
         return SETTLED
     for k in range(workspace.n_contacts):
-        if found[k] != 0 and modes[k] != CLOSED and law[k] != MASSLESS:
+        if found[k] != 0 and modes[k] != CLOSED and law[k] != AT_MASSLESS:
             status = _returns_at_once(instant, drive, workspace, method, loop, k)
             if status == YES:
                 found[k] = 0

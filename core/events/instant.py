@@ -22,7 +22,7 @@ from ..contact_solvers.directions import (
 from ..contact_solvers.friction_cones import friction_cones_size
 from ..contact_solvers.least_forces import least_forces_size
 from ..contact_solvers.planar_contacts import CALLED, CONES, CONES_SIGNATURE, addresses, solve_cones, work_size
-from ..contact_solvers.planar_contacts import VECTORS as VECTORS_OF_CONES
+from ..contact_solvers.planar_contacts import PLANAR_VECTORS as VECTORS_OF_CONES
 from ..laws import ForceLaw
 from ..linalg.small import least_norm_size
 from ..state.modes import MEMORY_SIZE
@@ -35,7 +35,7 @@ from .impact_law import strike
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .moreau_jean_step import push_apart
 from .prepare import use_modes
-from .records import INSTANT, PART_SIGNATURE, SCALARS, TOUCHING, VECTORS
+from .records import INSTANT, PART_SIGNATURE, SCALARS, SOLVER_VECTORS, TOUCHING
 from .resting import begin_rest
 from .zeno import step_through
 
@@ -88,7 +88,7 @@ class Instant:
                 **dict.fromkeys(("velocities", "bounced", "noise", "sum", "terms"), n_ext),
                 **dict.fromkeys(("some", "chosen", "order"), every),
                 "contacts": most, "table": TOUCHING.itemsize // 8 * most, "scalars": SCALARS.itemsize // 8,
-                **dict.fromkeys(VECTORS, most),
+                **dict.fromkeys(SOLVER_VECTORS, most),
                 "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
                 "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + 2 * n,
                 "columns": 2 * rows * (n + 1),

@@ -18,8 +18,8 @@ from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..state.workspace_records import OK
 from .constraint_projection import meet_constraints
-from .impact_law_codes import MASSLESS
-from .progress import GUARD_SIZE, START
+from .impact_law_codes import AT_MASSLESS
+from .progress import GUARD_SIZE, RUN_BEGAN
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report
 
@@ -44,7 +44,7 @@ def settle_massless(instant: Any, drive: Any, workspace: Any, method: Any) -> in
     )
     any_found = False
     for k in range(workspace.n_contacts):
-        if law[k] != MASSLESS or pending[k] == 0:
+        if law[k] != AT_MASSLESS or pending[k] == 0:
             continue
         any_found = True
         rate, rounding = phid[rows[k]], RATE_ROUNDING * rate_size(workspace, k)
@@ -60,9 +60,9 @@ def settle_massless(instant: Any, drive: Any, workspace: Any, method: Any) -> in
         return NOT_MET
     if call_accelerations(drive.accelerations, workspace) != OK:
         return NO_ACCELERATIONS
-    t, started = history_time(method, 0), history_time(method, 0) > vec(drive.guard, GUARD_SIZE)[START]
+    t, started = history_time(method, 0), history_time(method, 0) > vec(drive.guard, GUARD_SIZE)[RUN_BEGAN]
     for k in range(workspace.n_contacts):
-        if law[k] != MASSLESS or pending[k] == 0:
+        if law[k] != AT_MASSLESS or pending[k] == 0:
             continue
         if memory[k].mode == CLOSED:
             speed = max(-rates[k], 0.0)

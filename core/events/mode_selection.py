@@ -17,7 +17,7 @@ from .friction_rows import LOOSEST_RANK, RANK_OF_MANY
 from .impact import impact
 from .mode_switch import report_modes, take_modes
 from .reading import largest_acceleration, read_before
-from .records import NO_ACCELERATIONS, REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_ROOM, call_part, scalars, touching
+from .records import NO_ACCELERATIONS, REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANTS_ROOM, call_part, scalars, touching
 from .residual_approach import take_away_left
 from .touching import find_touching, looks_again, read_rates, read_values
 
@@ -27,7 +27,7 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
     """Impacts, forces, and what they mean."""
     contact = touching(instant)
     if not find_touching(instant, drive, workspace):
-        return WANT_ROOM
+        return WANTS_ROOM
     read_before(instant, drive, workspace)
     read_values(instant, workspace)
     scalars(instant).touched, scalars(instant).projection_loss = scalars(instant).count, 0.0

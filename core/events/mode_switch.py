@@ -19,7 +19,7 @@ from ..state.run_records import CLOSE, GRAZE, OPENS, REST, SLIP, STICK, call_acc
 from ..state.workspace_records import OK
 from .constraint_projection import meet_constraints
 from .contact_forces import BEGINS
-from .progress import GUARD_SIZE, START
+from .progress import GUARD_SIZE, RUN_BEGAN
 from .reading import slow_sliding
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part, scalars, touching
 from .report import report
@@ -130,7 +130,7 @@ def report_modes(instant: Any, drive: Any, workspace: Any, method: Any) -> None:
         ivec(workspace.contact_slide_rows, workspace.n_contacts),
     )
     t, phid = history_time(method, 0), vec(workspace.phid, workspace.m_ext)
-    started = t > vec(drive.guard, GUARD_SIZE)[START]
+    started = t > vec(drive.guard, GUARD_SIZE)[RUN_BEGAN]
     for i in range(scalars(instant).count):
         k, was, slid = contacts[i], contact[i].mode_before, contact[i].slide_mode_before
         if contact[i].companion < 0.0:

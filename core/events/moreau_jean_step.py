@@ -22,8 +22,8 @@ from ..state.modes import CLOSED, memories_at
 from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, PUSHED_FROM, PUSHES, PUSHES_LEFT, call_accelerations, loop_at
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from .constraint_projection import meet_constraints
-from .impulse_rows import ARM, BEFORE, INVERSE, OFF, TAKES, P, open_rows, part, prepare_rows, room, rows_of
-from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANT_ROOM, call_part, scalars, touching
+from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows, part, prepare_rows, room, rows_of
+from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
 from .report import report
 from .touching import find_touching
 from .zeno import end_pushing
@@ -46,7 +46,7 @@ def push_apart(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     clock, t, energy = vec(loop.clock, CLOCK_SIZE), history_time(method, 0), vec(workspace.energy, 3)
     h = t - clock[PUSHED_FROM]
     if not find_touching(instant, drive, workspace):
-        return WANT_ROOM
+        return WANTS_ROOM
     held = _look(instant, workspace)
     status = open_rows(instant, drive, workspace, method)
     if status != SETTLED:
@@ -167,7 +167,7 @@ def _push(instant: Any, workspace: Any, h: float) -> None:
     wholes, reals = blocks_at(instant.block_wholes, instant.block_reals, instant.most, n)
     scalars(instant).sweeps = sweep_rows(
         count, 2, rows > 3 * count, rows, n, wholes, reals,
-        part(instant, rows, TAKES), part(instant, rows, OFF), part(instant, rows, ARM), part(instant, rows, P), x,
+        part(instant, rows, TAKES), part(instant, rows, OFF), part(instant, rows, ROW_ARM), part(instant, rows, P), x,
         room(instant, rows, n),
         TOLERANCE * scalars(instant).largest_rate, SWEEPS,
     )  # fmt: skip
@@ -254,8 +254,8 @@ def _close_overlaps(instant: Any, workspace: Any) -> bool:
         if worst <= 0.0 or turn == SHIFTS:
             break
         press_apart(
-            count, rows, n, instant.directions, instant.responses, instant.columns, part(instant, rows, INVERSE), off,
-            part(instant, rows, BEFORE), x, room(instant, rows, n), 0.1 * level * least, SHIFT_TURNS,
+            count, rows, n, instant.directions, instant.responses, instant.columns, part(instant, rows, ROW_INVERSE),
+            off, part(instant, rows, BEFORE), x, room(instant, rows, n), 0.1 * level * least, SHIFT_TURNS,
         )  # fmt: skip
         for j in range(n):
             vec(workspace.q, workspace.n_ext)[j] += x[j]

@@ -6,14 +6,14 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..errors import SimulationError
 
-AT_ONCE = 50
+MOST_AT_ONCE = 50
 """Events at one instant before a run is given up."""
 IN_A_ROW, STANDSTILL = 1000, 1e-7
 """So many events within this part of the time that has passed are no progress. Bounces that accumulate end by the rest
 rule before that: with a restitution of 0.999 their last thousand take 2e-6 of it."""
 
 
-START, SINCE, COUNT = range(3)
+RUN_BEGAN, COUNTED_SINCE, EVENTS_COUNTED = range(3)
 """Of the guard's numbers: when the run began, since when its events are counted, and how many there were."""
 GUARD_SIZE = 3
 
@@ -47,16 +47,16 @@ class Progress:
         ------
         SimulationError : if the run does not get on.
         """
-        if here > AT_ONCE:
+        if here > MOST_AT_ONCE:
             raise _chatters(f"{here} events of contacts {contacts} at t = {t:.9g} s without progress in time", t)
         start, since, count = self.numbers.tolist()
-        self.numbers[COUNT] = count + 1.0
+        self.numbers[EVENTS_COUNTED] = count + 1.0
         if count < IN_A_ROW:
             return
         if not abs(t - since) > STANDSTILL * abs(t - start):
             span = f"{t - since:.3g} s up to t = {t:.9g} s"
             raise _chatters(f"{count + 1:.0f} events within {span}, of contacts {contacts} and others", t)
-        self.numbers[SINCE], self.numbers[COUNT] = t, 0.0
+        self.numbers[COUNTED_SINCE], self.numbers[EVENTS_COUNTED] = t, 0.0
 
 
 def _chatters(what: str, t: float) -> SimulationError:

@@ -6,7 +6,7 @@ from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact_solvers.directions import call_farthest
-from ..contact_solvers.friction_cones import FOUND, MOST_SWEEPS, SWEEPS, solve_friction_cones
+from ..contact_solvers.friction_cones import CONES_SOLVED, MOST_SWEEPS, SWEEPS, solve_friction_cones
 from ..contact_solvers.least_forces import take_least_forces
 from ..contact_solvers.planar_contacts import MANY
 from ..contact_solvers.projections import motion_left, motion_of
@@ -231,7 +231,7 @@ def _solve_in_room(instant: Any, n: int, who: int) -> bool:
             most = SWEEPS if attempt == 0 else MOST_SWEEPS
             found = solve_friction_cones(
                 least_norm, n, own, own_b, own_mu, own_base, own_known, way, own_p, work, most
-            ) == FOUND  # fmt: skip
+            ) == CONES_SOLVED  # fmt: skip
     if not found:
         return False
     if n > 1 and _repeat(instant, n, own, own_b, own_known, own_p, work):

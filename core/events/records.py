@@ -55,7 +55,7 @@ _PER_CONTACT = (
 TOUCHING = np.dtype([(name, np.float64) for name in _PER_CONTACT])
 """What is known of one touching contact."""
 
-VECTORS = (
+SOLVER_VECTORS = (
     "part", "pressing",                  # 1: takes part in the problem; and presses, as far as is known
     "mu", "base",                        # friction coefficient and earlier normal impulse of the friction limit
     "known_direction", "undirected",     # 1: slides in a known direction; zeros
@@ -113,7 +113,7 @@ INSTANT = np.dtype(
             "cones", "solve_cones", "independent", "farthest",
             "contacts",                  # (most,) int64: which touch
             "table", "scalars",          # (most,) TOUCHING, (1,) SCALARS
-            *VECTORS,
+            *SOLVER_VECTORS,
             "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
             # (2 most, n) float64, in space (6 most, n): gradients, and the motions that unit impulses cause
             "directions", "responses",
@@ -150,7 +150,7 @@ _touching_at, _scalars_at = records_view(types.from_dtype(TOUCHING)), record_vie
 # what settling an instant returns
 SETTLED = 0
 DECLINED = 1  # nothing has happened: Python settles it
-WANT_ROOM = 2  # nothing has happened; Python gives more room for what touches, and it is settled anew
+WANTS_ROOM = 2  # nothing has happened; Python gives more room for what touches, and it is settled anew
 WANT_MEMORY = 3  # the same, for structures and the factors of their matrices
 SINGULAR_JOINTS = 10
 IMMOVABLE_CONTACT = 11

@@ -13,7 +13,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..contact_solvers.patch_friction import one_patch, sweep_patches
 from ..contact_solvers.single_contact import solve_single_contact
-from ..contacts.normal3d import SIZE, pair_of
+from ..contacts.normal3d import PAIR_SIZE, pair_of
 from ..contacts.turning3d import FRICTION_RADIUS, turning_gradient
 from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import times
@@ -39,7 +39,7 @@ def find_spins(instant: Any, workspace: Any, loop: Any) -> None:
         clear(responses[row], n)
         if touching(instant)[i].spin_rate != 0.0:
             batch = probe_of(loop, ivec(instant.contacts, instant.most)[i])
-            coord, radius = ivec(batch.coord, SIZE), vec(batch.par, FRICTION_RADIUS + 1)[FRICTION_RADIUS]
+            coord, radius = ivec(batch.coord, PAIR_SIZE), vec(batch.par, FRICTION_RADIUS + 1)[FRICTION_RADIUS]
             _, _, normal = axes_of_contact(coord, directions[i], n)
             turning_gradient(
                 vec(workspace.q, workspace.n_ext), coord, pair_of(batch, 0), times(radius, normal), n, directions[row]

@@ -15,7 +15,7 @@ from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.modes import CLOSED, STICKS, memories_at
 from ..state.run_records import COUNTS_SIZE, HERE
-from .impact_law_codes import FORCE, MASSLESS
+from .impact_law_codes import AT_MASSLESS, BY_FORCE
 from .records import IMMOVABLE_CONTACT, SETTLED, delassus, scalars, touching
 
 
@@ -36,7 +36,7 @@ def find_touching(instant: Any, drive: Any, workspace: Any) -> bool:
         if pending[k] != 0 and companion[k] != 0:
             pending[k + companion[k]] = 1
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE or law[k] == MASSLESS or sleeping[k] != 0:
+        if law[k] == BY_FORCE or law[k] == AT_MASSLESS or sleeping[k] != 0:
             continue
         if pending[k] != 0 or memory[k].mode == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == instant.most:

@@ -12,7 +12,7 @@ from typing import Any
 from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..contacts.normal3d import SIZE, pair_of
+from ..contacts.normal3d import PAIR_SIZE, pair_of
 from ..contacts.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
 from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import cross, times
@@ -45,7 +45,7 @@ def find_turning_rows(instant: Any, workspace: Any, loop: Any, first: int, arms:
     for i in range(count):
         k, turns = ivec(instant.contacts, instant.most)[i], vec(instant.turns, instant.most)[i] != 0.0
         batch = probe_of(loop, k)
-        coord, par = ivec(batch.coord, SIZE), vec(batch.par, FRICTION_RADIUS + 1)
+        coord, par = ivec(batch.coord, PAIR_SIZE), vec(batch.par, FRICTION_RADIUS + 1)
         for block in range(TURNING_ROWS):
             row = first + block * count + i
             arms[row] = (par[ROLLING] if block < 2 else par[SPINNING] - par[FRICTION_RADIUS]) if turns else 0.0

@@ -39,8 +39,8 @@ from ..state.run_records import (
     loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
-from .impact_law_codes import FORCE, MASSLESS
-from .progress import COUNT, GUARD_SIZE, SINCE
+from .impact_law_codes import AT_MASSLESS, BY_FORCE
+from .progress import COUNTED_SINCE, EVENTS_COUNTED, GUARD_SIZE
 from .records import DECLINED, SETTLED
 
 WINDOW = 64
@@ -106,7 +106,7 @@ def may_push(drive: Any, workspace: Any, method: Any) -> bool:
     for k in range(workspace.n_contacts):
         if ivec(workspace.contact_companion, workspace.n_contacts)[k] != 0:
             return False
-        if law[k] == MASSLESS or (law[k] != FORCE and in_space(workspace, k) and not can_look(loop, k)):
+        if law[k] == AT_MASSLESS or (law[k] != BY_FORCE and in_space(workspace, k) and not can_look(loop, k)):
             return False
     return True
 
@@ -116,7 +116,7 @@ def any_force_law(drive: Any, workspace: Any) -> bool:
     """True if some contacts act as forces."""
     law = ivec(drive.law, workspace.n_contacts)
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE:
+        if law[k] == BY_FORCE:
             return True
     return False
 
@@ -137,7 +137,7 @@ def step_through(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     if any_force_law(drive, workspace):
         clock[STEP_SIZE] = clock[PUSH_STEP]
     # these steps get on
-    ivec(drive.counts, COUNTS_SIZE)[HERE], guard[SINCE], guard[COUNT] = 0, t, 0.0
+    ivec(drive.counts, COUNTS_SIZE)[HERE], guard[COUNTED_SINCE], guard[EVENTS_COUNTED] = 0, t, 0.0
     return SETTLED
 
 
@@ -153,7 +153,7 @@ def _make_pending(drive: Any, workspace: Any) -> int:
     level, sleeping = GAP_ROUNDING * position_level(workspace), ivec(workspace.sleeping, workspace.n_contacts)
     law, count = ivec(drive.law, workspace.n_contacts), 0
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE:
+        if law[k] == BY_FORCE:
             continue
         touches = sleeping[k] == 0 and phi[rows[k]] <= level * scale[rows[k]]
         if memory[k].mode == CLOSED or touches:

@@ -12,7 +12,19 @@ from ..compiled.jit import caller, compiled, internal
 from ..compiled.views import ivec, uvec, vec
 from .choice import choose_rows
 from .ordering import choose_order, order_room
-from .record import ANALYZE_SPARSE, DENSE, GROWTH, IN_INDEX, INDEX, LU_TYPE, OK, SCRATCH, UNREADY, VALUES, WANT_ROOM
+from .record import (
+    ANALYZE_SPARSE,
+    DENSE,
+    IN_INDEX,
+    INDEX,
+    LU_TYPE,
+    MOST_PIVOT_GROWTH,
+    OK,
+    SCRATCH,
+    UNREADY,
+    VALUES,
+    WANT_ROOM,
+)
 from .solve import factor
 from .symbolic import write_analysis
 
@@ -177,7 +189,7 @@ def _set_limits(lu: Any) -> None:
         own = scale[above] * unit[above] / (scale[below] * unit[below])
         values[limits + j] = max(values[limits + j], own, abs(values[p]))
     for i in range(n):
-        values[limits + i] *= GROWTH
+        values[limits + i] *= MOST_PIVOT_GROWTH
 
 
 @compiled

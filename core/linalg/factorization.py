@@ -11,7 +11,7 @@ from .analyze import analyze, follow, lay_out_now, use_pivots, words_of
 from .check_pattern import LARGEST_INDEX, check_pattern
 from .errors import SingularMatrixError
 from .memory import Scratch, addresses
-from .record import DENSE, INDEX, KINDS, LU, OK, PROGRAM_LIMIT, SCRATCH, VALUES, WANT_ROOM
+from .record import DENSE, INDEX, LU, MATRIX_KINDS, OK, PROGRAM_LIMIT, SCRATCH, VALUES, WANT_ROOM
 from .singular import singular_place
 from .solve import factor, solve
 
@@ -73,7 +73,7 @@ class Matrix:
     @property
     def kind(self) -> str:
         """Of the refactorisation: "dense", "program" or "columns"; "unready" before the first analysis."""
-        return KINDS[self.record["kind"]]
+        return MATRIX_KINDS[self.record["kind"]]
 
     @property
     def address(self) -> int:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from .analyze import ANALYZE_SIGNATURE, analyze_sparse
-from .record import ANALYZE_SPARSE, FUNCTIONS, KINDS
+from .record import ANALYZE_SPARSE, FUNCTION_COUNT, MATRIX_KINDS
 from .solve import functions_of
 
 FIRST = 64
@@ -19,8 +19,8 @@ FIRST = 64
 @cache
 def addresses(sparse: bool) -> NDArray[np.int64]:
     """What the field `functions` of LU points to: without those of sparse matrices nothing of these is compiled."""
-    found = np.zeros(FUNCTIONS, dtype=np.int64)
-    for k, kind in enumerate(KINDS if sparse else KINDS[:2]):
+    found = np.zeros(FUNCTION_COUNT, dtype=np.int64)
+    for k, kind in enumerate(MATRIX_KINDS if sparse else MATRIX_KINDS[:2]):
         found[2 * k : 2 * k + 2] = functions_of(kind)
     if sparse:
         found[ANALYZE_SPARSE] = address_of(analyze_sparse, ANALYZE_SIGNATURE)

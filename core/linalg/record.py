@@ -13,12 +13,12 @@ REANALYSE = 2  # the pivots fit the values no longer (or `analyze` was never cal
 WANT_ROOM = 3  # there is too little: `needs` says how much there must be
 
 # kinds
-UNREADY, DENSE, PROGRAM, COLUMNS = range(4)
-KINDS = ("unready", "dense", "program", "columns")
+UNREADY, DENSE, PROGRAM, BY_COLUMNS = range(4)
+MATRIX_KINDS = ("unready", "dense", "program", "columns")
 
 # An entry of L may grow by this factor over the largest of its column at analysis, at least over what is 1 once the
 # rows are balanced.
-GROWTH = 1e5
+MOST_PIVOT_GROWTH = 1e5
 
 LU = np.dtype(
     [
@@ -26,7 +26,7 @@ LU = np.dtype(
         for name in (
             "n", "nnz",
             "kind", "ordered", "ready",  # one of the above; 1: the columns have an order; 1: there are pivots
-            "functions",   # address of FUNCTIONS machine addresses
+            "functions",   # address of FUNCTION_COUNT machine addresses
             "factor_function", "solve_function",  # those of this kind
             "row", "col", "slot",  # (nnz,) int64: place of each entry, and its position in the source array
             "entry_to",    # (nnz,) uint32: position of each matrix entry in `values`
@@ -70,7 +70,7 @@ IN_INDEX = (
     "step_start", "step_to", "step_left", "step_right", "sum_start", "sum_left", "sum_right",
 )  # fmt: skip
 """Fields that point into `index`."""
-FUNCTIONS = 10
+FUNCTION_COUNT = 10
 """factor and solve of each kind, in their order; `analyze_sparse`; one that is free."""
 ANALYZE_SPARSE = 8
 

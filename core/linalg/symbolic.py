@@ -8,7 +8,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, uvec
-from .record import COLUMNS, INDEX, OK, PROGRAM, SCRATCH, VALUES, WANT_ROOM
+from .record import BY_COLUMNS, INDEX, OK, PROGRAM, SCRATCH, VALUES, WANT_ROOM
 
 
 @internal
@@ -61,7 +61,7 @@ def write_analysis(lu: Any) -> int:
     if program:
         _write_operations(lu, l_start, l_row, u_start, u_row, place)
     _place_entries(lu, start, row, l_start, l_row, u_start, u_row, place, ivec(at + 16 * space, nl + nu + n))
-    lu.kind = PROGRAM if program else COLUMNS
+    lu.kind = PROGRAM if program else BY_COLUMNS
     functions = ivec(lu.functions, 2 * lu.kind + 2)
     lu.factor_function, lu.solve_function = functions[2 * lu.kind], functions[2 * lu.kind + 1]
     lu.ready = 1

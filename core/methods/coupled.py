@@ -40,10 +40,10 @@ from ..state.workspace_records import (
     RTOL,
     STAGES,
 )
-from .guess import AT_REST, best_guess, guess_stages
+from .guess import FROM_REST, best_guess, guess_stages
 from .multistep import weight_rows
 from .stages import (
-    A2,
+    A_SQUARED,
     EMBEDDED,
     GAMMA,
     INNER_EACH,
@@ -132,7 +132,7 @@ def _move(workspace: Any, method: Any, h: float) -> float:
             move_q, move_v, moved_q, moved_v = 0.0, 0.0, 0.0, 0.0
             for j in range(stages):
                 correction, e = rows[j, 3 * n + l], COUPLED_STAGES * i + j
-                move_q += table[A2, e] * correction
+                move_q += table[A_SQUARED, e] * correction
                 move_v += table[A, e] * correction
                 moved_q += table[SHIFT2, e] * correction
                 moved_v += table[SHIFT, e] * correction
@@ -222,7 +222,7 @@ def solve_coupled(workspace: Any, method: Any, t: float, h: float) -> int:
     for attempt in range(3):
         if attempt == 1 and fresh:
             continue
-        guess_stages(workspace, method, t, h, AT_REST if attempt == 2 else guess)
+        guess_stages(workspace, method, t, h, FROM_REST if attempt == 2 else guess)
         if attempt > 0 or fresh:
             status = _refactor(workspace, method, t, h, simple)
             if status != OK:

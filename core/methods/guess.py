@@ -8,7 +8,7 @@ from ..state.workspace_records import COUPLED_STAGES
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import rows_available, weight_rows
-from .stages import A2, INVERSE, NODES, VECTORS, A, stage_count, stage_rows
+from .stages import A_SQUARED, INVERSE, NODES, VECTORS, A, stage_count, stage_rows
 
 MOST_ROWS = 5
 # Sum of the magnitudes of the weights: beyond, extrapolation amplifies errors more than it predicts.
@@ -16,7 +16,7 @@ LARGEST_EXTRAPOLATION = 40.0
 # Accelerations that would move a coordinate by more of its scale in one step are those of stiff components.
 LONGEST_MOVE = 0.25
 # how the stages are predicted
-BY_ACCELERATIONS, BY_VELOCITIES, AT_REST = range(3)
+FROM_ACCELERATIONS, FROM_VELOCITIES, FROM_REST = range(3)
 
 
 @internal
@@ -41,7 +41,7 @@ def best_guess(workspace: Any, method: Any, h: float) -> int:
     """Whether velocities or accelerations would have predicted the newest row better: for stiff components, whose
     accelerations are large and noisy, it is the velocities."""
     if rows_available(method) < 3:
-        return BY_ACCELERATIONS
+        return FROM_ACCELERATIONS
     n = workspace.n_ext
     newest = history_row(workspace, method, 0)
     count = _weights(workspace, method, 1, history_time(method, 0), h)
@@ -55,14 +55,14 @@ def best_guess(workspace: Any, method: Any, h: float) -> int:
             a -= weights[j] * old[2 * n + l]
         of_v += (v / weight_v[l]) ** 2
         of_a += (h * a / weight_v[l]) ** 2
-    return BY_VELOCITIES if of_v < of_a else BY_ACCELERATIONS
+    return FROM_VELOCITIES if of_v < of_a else FROM_ACCELERATIONS
 
 
 @internal
 def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> bool:
     """Accelerations and multipliers of the stages by extrapolation through the history; q and v that belong to them.
 
-    BY_VELOCITIES: a = A^-1 (V - v_n) / h with extrapolated velocities V of the stages. AT_REST: a = 0, so that the
+    FROM_VELOCITIES: a = A^-1 (V - v_n) / h with extrapolated velocities V of the stages. FROM_REST: a = 0, so that the
     stages stay near the newest row whatever its accelerations are. Returns whether the guess is plausible.
     """
     n = workspace.n_ext
@@ -71,13 +71,13 @@ def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> boo
     weights = vec(workspace.scratch + 8 * MOST_ROWS, MOST_ROWS)
     newest = history_row(workspace, method, 0)
     scale, plausible = vec(workspace.scale, workspace.n), True
-    source = n if guess == BY_VELOCITIES else 2 * n
+    source = n if guess == FROM_VELOCITIES else 2 * n
     for i in range(stages):
         row = rows[i]
         count = _weights(workspace, method, 0, t + table[VECTORS, NODES + i] * h, h)
         for l in range(workspace.n):
             found = 0.0
-            if guess != AT_REST:
+            if guess != FROM_REST:
                 for j in range(count):
                     found += weights[j] * history_row(workspace, method, j)[source + l]
             row[3 * n + l] = found
@@ -89,7 +89,7 @@ def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> boo
     for l in range(workspace.n):
         for i in range(stages):
             a = rows[i, 3 * n + l]
-            if guess == BY_VELOCITIES:
+            if guess == FROM_VELOCITIES:
                 a = 0.0
                 for j in range(stages):
                     a += table[INVERSE, COUPLED_STAGES * i + j] * (rows[j, 3 * n + l] - newest[n + l]) / h
@@ -98,7 +98,7 @@ def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> boo
             move_q, move_v = 0.0, 0.0
             for j in range(stages):
                 a = rows[j, 2 * n + l]
-                move_q += table[A2, COUPLED_STAGES * i + j] * a
+                move_q += table[A_SQUARED, COUPLED_STAGES * i + j] * a
                 move_v += table[A, COUPLED_STAGES * i + j] * a
             if abs(h * h * move_q) > LONGEST_MOVE * scale[l]:
                 plausible = False
@@ -111,4 +111,4 @@ def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> boo
 def guess_stages(workspace: Any, method: Any, t: float, h: float, guess: int) -> None:
     """Starting values of all stages, by `guess` if that is plausible."""
     if not _predict(workspace, method, t, h, guess):
-        _predict(workspace, method, t, h, AT_REST)
+        _predict(workspace, method, t, h, FROM_REST)

@@ -12,7 +12,7 @@ from ..state.workspace_records import COUPLED_STAGES
 from .multistep import weight_rows
 
 # rows of `weights`; matrices are stored row by row, COUPLED_STAGES wide
-A, A2, SHIFT, SHIFT2, VECTORS, EMBEDDED, INVERSE, MEMORY = range(8)
+A, A_SQUARED, SHIFT, SHIFT2, VECTORS, EMBEDDED, INVERSE, MEMORY = range(8)
 # parts of VECTORS: nodes c, b, b^T A, extrapolation of the stages to the end
 NODES, B, BA, END = 0, COUPLED_STAGES, 2 * COUPLED_STAGES, 3 * COUPLED_STAGES
 # parts of EMBEDDED after the weights of the stages: weight of the start, gamma, weights of the lower difference

@@ -20,7 +20,7 @@ from pydantic import (
 from pydantic_core import CoreSchema
 
 from ..errors import ModelError
-from .explain import ALONE, explain, problems_of, shown
+from .explain import A_LIST, explain, problems_of, shown
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -107,7 +107,7 @@ class Record(BaseModel, metaclass=_DescribesItself):
                 _refuse_no_number(name, data[name])
             for name in _list_fields(cls) & data.keys():
                 if isinstance(data[name], BaseModel):
-                    raise ValueError(f"{name}: {ALONE} (given: {shown(data[name])})")
+                    raise ValueError(f"{name}: {A_LIST} (given: {shown(data[name])})")
         return data
 
 

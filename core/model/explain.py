@@ -11,7 +11,7 @@ from .words import an
 
 LONGEST = 60
 """Characters of a value that are shown."""
-ALONE = "must be a list: write a single one in brackets, [...]"
+A_LIST = "must be a list: write a single one in brackets, [...]"
 NEEDED = {
     "missing": "it is missing: give it",
     "greater_than": "must be greater than {gt}",
@@ -28,8 +28,8 @@ NEEDED = {
     "bool_parsing": "must be true or false",
     "string_type": "must be a text",
     "string_too_long": "must have at most {max_length} characters",
-    "tuple_type": ALONE,
-    "list_type": ALONE,
+    "tuple_type": A_LIST,
+    "list_type": A_LIST,
     "too_short": "needs at least {min_length} entries, there are {actual_length}",
     "too_long": "takes at most {max_length} entries, there are {actual_length}",
     "literal_error": "must be {expected}",

@@ -14,7 +14,7 @@ from .rotation3d import turned, turning
 
 FRAME = 7
 """Places of a frame: three of its position, four of its Euler parameters."""
-ARM = 3
+ARMS_AT = 3
 """Where those begin."""
 
 
@@ -64,7 +64,7 @@ def vector_of(numbers: Any, first: int) -> Any:
 @inlined
 def in_space(row: Any, places: Any, first: int, u: Any) -> Any:
     """A u of the frame whose places begin at `first`."""
-    p = four_of(row, places, first + ARM, 1.0)
+    p = four_of(row, places, first + ARMS_AT, 1.0)
     return turned(turning(p, u), p)
 
 

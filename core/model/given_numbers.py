@@ -10,7 +10,7 @@ from .arithmetic import evaluate, names_in
 from .base import Record
 from .places import inside, replaced
 
-KINDS = ("bodies", "joints", "forces", "contacts", "groups")
+RECORD_LISTS = ("bodies", "joints", "forces", "contacts", "groups")
 GRAVITY = "gravity"
 """The model's own numbers have places too: "gravity.1"."""
 STANDARD_GRAVITY = (0.0, -9.81, 0.0)
@@ -75,7 +75,7 @@ def _collected(data: dict[str, Any]) -> tuple[dict[str, Any], list[Any]]:
     """Data without formulas in place, and all formulas."""
     given = data.get("formulas", ())
     formulas = list(given) if _is_list(given) else []
-    for kind in KINDS:
+    for kind in RECORD_LISTS:
         if _is_list(data.get(kind)):
             for element in data[kind]:
                 if isinstance(element, Mapping) and isinstance(element.get("name"), str):
@@ -123,7 +123,7 @@ def _with(data: Mapping[str, Any], target: str, value: float) -> Mapping[str, An
 
 
 def _elements(data: Mapping[str, Any]) -> Iterator[tuple[str, int, Any]]:
-    for kind in KINDS:
+    for kind in RECORD_LISTS:
         if _is_list(data.get(kind)):
             for k, element in enumerate(data[kind]):
                 yield kind, k, element

@@ -13,7 +13,7 @@ from ..compiled.jit import inlined, internal
 from .attitude import AXES
 from .channels import Channel
 from .derived import NOT_KNOWN, Columns, Derived, Floats, Places
-from .frame3d import ARM, FRAME, Frame3D, four_of, three_of, vector_of
+from .frame3d import ARMS_AT, FRAME, Frame3D, four_of, three_of, vector_of
 from .markers import Marker3D
 from .rotation3d import along, plus, turned, turning
 
@@ -62,8 +62,8 @@ def marker_channels3d(row: Any, places: Any, numbers: Any, out: Any) -> None:
     for e in range(len(numbers) // NUMBERS):
         q, u = PLACES * e, vector_of(numbers, NUMBERS * e)
         v, a, shown = q + FRAME, q + 2 * FRAME, q + 3 * FRAME
-        p = four_of(row, places, q + ARM, 1.0)
-        pd, pdd = four_of(row, places, v + ARM, 0.0), four_of(row, places, a + ARM, 0.0)
+        p = four_of(row, places, q + ARMS_AT, 1.0)
+        pd, pdd = four_of(row, places, v + ARMS_AT, 0.0), four_of(row, places, a + ARMS_AT, 0.0)
         arms = turning(p, u)
         at = _put(out, at, plus(three_of(row, places, q), turned(arms, p)))
         at = _put(out, at, plus(three_of(row, places, v), along(arms, pd)))

@@ -31,7 +31,7 @@ from .signals import INPUT_SIZE, InputSignal, evaluate_signal
 MOTION = 7
 """Kind of a signal beside those of `signals.py`: its pool is MOTION, rows of position, rate and jumps, and a gain."""
 # A motion has a row of its own behind those of the input channels: c_0, c_1, t_k, T (0: not known yet).
-JUMP, RATE_JUMP, SINCE, DURATION = range(INPUT_SIZE)
+INPUT_JUMP, INPUT_RATE_JUMP, INPUT_SINCE, INPUT_DURATION = range(INPUT_SIZE)
 
 
 def input_rows(channels: int, motions: int) -> int:
@@ -45,9 +45,11 @@ def evaluate_motion(pool: Any, inputs: Any, offset: int, t: float) -> Any:
     if int(pool[offset]) != MOTION:
         return evaluate_signal(pool, inputs, offset, t)
     jumps = INPUT_SIZE * int(pool[offset + 3])
-    since, gain = inputs[jumps + SINCE], pool[offset + 4]
+    since, gain = inputs[jumps + INPUT_SINCE], pool[offset + 4]
     x, v, a = said(inputs, int(pool[offset + 1]), int(pool[offset + 2]), since, t)
-    c, dc, ddc = closing(inputs[jumps + JUMP], inputs[jumps + RATE_JUMP], inputs[jumps + DURATION], t - since)
+    c, dc, ddc = closing(
+        inputs[jumps + INPUT_JUMP], inputs[jumps + INPUT_RATE_JUMP], inputs[jumps + INPUT_DURATION], t - since
+    )
     return gain * x + c, gain * v + dc, gain * a + ddc
 
 
@@ -116,6 +118,6 @@ class InputMotion:
 
     def said(self, inputs: NDArray[np.float64], t: float) -> tuple[float, float]:
         """Position and velocity at time `t` as the channels say."""
-        since = float(inputs[self.jumps, SINCE])
+        since = float(inputs[self.jumps, INPUT_SINCE])
         x, v, _ = said.py_func(inputs.reshape(-1), self.position, self.rate, since, t)
         return self.gain * float(x), self.gain * float(v)

@@ -14,7 +14,7 @@ from ..compiled.library import LIBRARY, Library
 from ..simulation.exchange import possible
 from ..source_digests import c_digest
 from .errors import NativeError
-from .layout import HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
+from .layout import IMAGE_HEAD, MAGIC, VERSION, arrays_in_places, called_symbols, numbers_of
 from .parameters import Parameter
 from .reach import Found, begin_of, check_words, held_by, holds_reals, like_addresses, reached, without_parts, words_of
 from .scratch import own_of, scratch_of
@@ -232,11 +232,11 @@ def _file(
         "parameters": len(heads), "words": len(words), "coefficients": len(coefficients),
         "exclusions": len(exclusions) // 2,
         "functions": len(symbols), "function_text": len(function_text), "texts": len(names), "text_size": len(text),
-        **dict(zip(HEAD[-5:], map(len, relocations), strict=True)),
+        **dict(zip(IMAGE_HEAD[-5:], map(len, relocations), strict=True)),
     }  # fmt: skip
     start = MAGIC + library.digest.encode().ljust(32, b"\0")[:32] + c_digest().encode()
-    head["size"] = len(start) + 8 * len(HEAD) + len(body)
-    return start + struct.pack(f"<{len(HEAD)}q", *(head[name] for name in HEAD)) + body
+    head["size"] = len(start) + 8 * len(IMAGE_HEAD) + len(body)
+    return start + struct.pack(f"<{len(IMAGE_HEAD)}q", *(head[name] for name in IMAGE_HEAD)) + body
 
 
 def _parameter_parts(

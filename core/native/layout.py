@@ -5,7 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ..assembly.matrix_state import HEAD as MATRIX_HEAD
+from ..assembly.matrix_state import MATRIX_HEAD
 from ..compiled.library import Library
 from ..linalg.record import VALUES
 from ..rounding import PUNCTUAL, SHORTEST
@@ -14,7 +14,7 @@ from ..state.workspace_records import OF_D, OF_KKT
 MAGIC = b"TLISMNI\x01"
 VERSION = 1
 
-HEAD = (
+IMAGE_HEAD = (
     "version", "size", "checksum",
     "shared",                                  # bytes that are never written
     "tables", "decisive", "copied", "own",     # records and addresses; with what decides; what an image has; all

@@ -21,7 +21,7 @@ from .forms import Form
 from .reach import begin_of
 from .trials import Trials
 
-ALONE, PRODUCT, SUM = range(3)
+BY_ONE, BY_PRODUCT, BY_SUM = range(3)
 """A word follows from one parameter; from several, as a product or as a sum of what each makes of it."""
 PARTS = (1.0, 1.0 + 2.0**-10, 0.9, 1.137, 0.7311, 1.5, 0.5, 2.0, 0.2, 5.0, 0.1, 10.0, 0.01, 100.0)
 """Of the present value: other values that are tried, near ones first; and ABOUT of one that is 0."""
@@ -52,7 +52,7 @@ class Word(NamedTuple):
     array: NDArray[Any]
     offset: int
     form: Form
-    mode: int = ALONE
+    mode: int = BY_ONE
 
     @property
     def place(self) -> tuple[int, int]:

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import TlismniError
 from .errors import NativeError
 from .parameter_dependence import Memory
-from .parameters import ALONE, PRODUCT, SUM, Parameter, Setting
+from .parameters import BY_ONE, BY_PRODUCT, BY_SUM, Parameter, Setting
 from .reach import begin_of
 
 logger = logging.getLogger(__name__)
@@ -57,13 +57,13 @@ def together(memory: Memory, found: Sequence[Parameter], settings: Mapping[str, 
     for place, who in users.items():
         pairs = [pair for pair in combinations(who, 2) if pair in fits]
         if pairs:
-            wrong = {mode: {pair for pair in pairs if mode not in fits[pair][place]} for mode in (PRODUCT, SUM)}
+            wrong = {mode: {pair for pair in pairs if mode not in fits[pair][place]} for mode in (BY_PRODUCT, BY_SUM)}
             modes[place] = min(wrong, key=lambda mode: len(wrong[mode]))
             excluded |= wrong[modes[place]]
     names = [p.name for p in found]
 
     def with_modes(k: int, p: Parameter) -> Parameter:
-        words = tuple(word._replace(mode=modes.get(word.place, ALONE)) for word in p.words)
+        words = tuple(word._replace(mode=modes.get(word.place, BY_ONE)) for word in p.words)
         others = frozenset(names[j] for pair in excluded if k in pair for j in pair if j != k)
         return p._replace(words=words, excludes=others)
 
@@ -159,7 +159,7 @@ def _modes(copies: _Copies, p: Parameter, q: Parameter) -> dict[Place, tuple[int
         if None in found:
             continue
         changed = memory.words([{}, *(copy for copy in found if copy is not None)])
-        result: dict[Place, tuple[int, ...]] = dict.fromkeys(both, (PRODUCT, SUM))
+        result: dict[Place, tuple[int, ...]] = dict.fromkeys(both, (BY_PRODUCT, BY_SUM))
         for (k, offset), values in changed.items():
             place, four = (begin_of(memory.arrays[k]), offset), values.tolist()
             if place in both:
@@ -174,9 +174,9 @@ def _modes_of(here: float, first: float, second: float, joint: float) -> tuple[i
     found = []
     size = max(map(abs, (here, first, second, joint)))
     if abs(here) > SMALL * size and abs(joint * here - first * second) <= LIKE * abs(joint * here):
-        found.append(PRODUCT)
+        found.append(BY_PRODUCT)
     if abs(joint - (first + second - here)) <= LIKE * size:
-        found.append(SUM)
+        found.append(BY_SUM)
     return tuple(found)
 
 

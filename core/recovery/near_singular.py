@@ -17,7 +17,7 @@ from ..state.workspace_records import LEAST_CONDITION, OK, WORST_CONDITION
 if TYPE_CHECKING:
     from ..simulation.engine import Engine
 
-STRAINED = 8.0
+STRAINED_GROWTH = 8.0
 """Growth of the condition of the constraints in the last step beyond which samples are looked at."""
 NOISY = 1.5e-3
 """Least singular value of the scaled Phi_q below which rounding reaches 1e-7 of the accelerations."""
@@ -31,7 +31,7 @@ def strained(sim: "Engine") -> bool:
     if bridge > 0:
         return bool(times[(newest - bridge + 1) % len(times)] < sim.t < times[newest])
     return bool(
-        rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+        rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
         and ring[1] > 1
         and times[newest - 1] < sim.t < times[newest]
     )

@@ -22,7 +22,7 @@ from ..errors import SimulationError
 from ..event_detection.crossings import find_events
 from ..methods.history import recall
 from ..rounding import CONSTRAINT_NOISE, SAME_INSTANT
-from ..state.run_records import EVENT, HELD, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
+from ..state.run_records import EQUAL_STEPS, EVENT, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
 from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
 from ..time_loop.time_loop import accept, set_weights_at, violates_redundant
 from .collocation import Collocation, Points, gauss
@@ -257,7 +257,7 @@ def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
     workspace, method, loop = sim.workspace.record, sim._method.record, sim._loop.record
     ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
-    sim.clock[[STEP_SIZE, HELD, PREVIOUS_NORM]] = natural, 0.0, 0.0
+    sim.clock[[STEP_SIZE, EQUAL_STEPS, PREVIOUS_NORM]] = natural, 0.0, 0.0
     rate[FACTOR_AGE] = -1.0
     count, last = 1, len(points.times)
     for k in range(1, last):

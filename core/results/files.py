@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .result import Result
 
 FORMAT = "tlismni-result-1"
-HEADER, COLUMNS, STEPS, EVENTS = "tlismni.header", "tlismni.columns", "tlismni.steps", "events"
+HEADER_ENTRY, COLUMNS_ENTRY, STEPS_ENTRY, EVENTS_ENTRY = "tlismni.header", "tlismni.columns", "tlismni.steps", "events"
 """Entries of a stored result beside "time" and the channels."""
 PARTS = ("q", "v", "a", "multipliers")
 EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -65,12 +65,12 @@ def save(result: "Result", path: str | Path) -> Path:
     }
     arrays: dict[str, NDArray[Any]] = {
         **columns(result),
-        EVENTS: np.array(json.dumps([event.to_dict() for event in result.events])),
-        HEADER: np.array(json.dumps(header)),
-        COLUMNS: np.column_stack(rest) if rest else np.zeros((len(result), 0)),
+        EVENTS_ENTRY: np.array(json.dumps([event.to_dict() for event in result.events])),
+        HEADER_ENTRY: np.array(json.dumps(header)),
+        COLUMNS_ENTRY: np.column_stack(rest) if rest else np.zeros((len(result), 0)),
     }
     if result.step_log is not None:
-        arrays[STEPS] = result.step_log
+        arrays[STEPS_ENTRY] = result.step_log
     write_arrays(target, arrays)
     return target
 

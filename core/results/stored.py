@@ -16,7 +16,7 @@ from ..events import Event, Fallback
 from ..model.channels import Channel, Enumeration
 from ..multibody_model import Model
 from ..tolerances import OfScales
-from .files import COLUMNS, EVENTS, FORMAT, HEADER, PARTS, STEPS
+from .files import COLUMNS_ENTRY, EVENTS_ENTRY, FORMAT, HEADER_ENTRY, PARTS, STEPS_ENTRY
 from .result import Result
 
 logger = logging.getLogger(__name__)
@@ -59,7 +59,7 @@ def load_result(path: str | Path, *, allow_imports: bool | Collection[str] = Fal
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
-            if not hasattr(archive, "files") or HEADER not in archive.files:
+            if not hasattr(archive, "files") or HEADER_ENTRY not in archive.files:
                 raise ModelError(f"'{path}' holds no whole result: write one with result.save(...) or `run --output`")
             entries = {name: archive[name] for name in archive.files}
     except (OSError, ValueError, zipfile.BadZipFile, EOFError) as error:
@@ -73,19 +73,19 @@ def load_result(path: str | Path, *, allow_imports: bool | Collection[str] = Fal
 
 
 def _result(entries: dict[str, NDArray[Any]], allow_imports: bool | Collection[str]) -> Result:
-    header = json.loads(str(entries[HEADER][()]))
+    header = json.loads(str(entries[HEADER_ENTRY][()]))
     if header["format"] != FORMAT:
         raise ModelError(f"it has the format '{header['format']}', this version reads '{FORMAT}'")
     channels = tuple(_channel(**record) for record in header["channels"])
     table = StoredTable(channels, set(header["plain"]), {part: header["places"][part] for part in PARTS})
-    samples = np.column_stack([entries["time"], *(entries[c.name] for c in channels), entries[COLUMNS]])
+    samples = np.column_stack([entries["time"], *(entries[c.name] for c in channels), entries[COLUMNS_ENTRY]])
     return Result(
         samples,
         table,
-        [Event(**event) for event in json.loads(str(entries[EVENTS][()]))],
+        [Event(**event) for event in json.loads(str(entries[EVENTS_ENTRY][()]))],
         header["stats"],
         [Fallback(**record) for record in header["fallbacks"]],
-        entries.get(STEPS),
+        entries.get(STEPS_ENTRY),
         [
             RedundantRow(r["constraint"], r["row"], tuple(r["repeats"]), bool(r.get("of_body", False)))
             for r in header["redundant"]

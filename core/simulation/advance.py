@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..events import Fallback
 from ..methods.history import recall
-from ..recovery.near_singular import STRAINED
+from ..recovery.near_singular import STRAINED_GROWTH
 from ..recovery.repartition import repair
 from ..rounding import NO_STEP, SHORTEST
 from ..state.run_records import (
@@ -231,7 +231,7 @@ def _pass_singular(sim: "Simulation", last_resort: bool = False) -> bool:
 def _pass_after_all(sim: "Simulation") -> bool:
     """Step over a singular position because steps towards it have failed; False if there is none."""
     rate = sim.workspace.arrays["rate"]
-    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    near = sim.clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
     return bool(near) and _pass_singular(sim, last_resort=True)
 
 

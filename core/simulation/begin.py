@@ -14,7 +14,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..event_detection.crossings import remember
 from ..events.event_handling import begin_pending_forces
-from ..events.impact_law_codes import FORCE
+from ..events.impact_law_codes import BY_FORCE
 from ..events.prepare import rank_of
 from ..events.records import REPEATED_ROWS, SETTLED, call_part
 from ..methods.history import restart
@@ -23,7 +23,16 @@ from ..stage.accelerations import solve_accelerations
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from .begin_measure import place
-from .begin_record import BEGIN_SIZE, FIRST_STEP, FOUND_SIZE, LOOK_AT_RANK, MOVED, MOVED_RATES, START_TOLERANCE, WHO
+from .begin_record import (
+    BEGIN_SIZE,
+    GIVEN_FIRST_STEP,
+    GIVEN_START_TOLERANCE,
+    LOOK_AT_RANK,
+    MOVED_MOST,
+    MOVED_POSITIONS,
+    MOVED_RATES,
+    START_FOUND_SIZE,
+)
 
 # statuses besides those of `events/records.py`
 NO_POSITIONS, NO_VELOCITIES = 40, 41
@@ -32,7 +41,7 @@ OVERLAPS = 42
 """Shapes of a constraint contact overlap at the start."""
 SINGULAR_START = 43
 """The constraints depend on one another there."""
-NO_START = 44
+START_UNSOLVED = 44
 """There are no accelerations, or no memory for the equations."""
 
 
@@ -49,8 +58,8 @@ def start(begin: Any, drive: Any, instant: Any, workspace: Any, method: Any, loo
     if status != SETTLED:
         return int(status)
     if not _accelerate(workspace):
-        return NO_START
-    clock, first = vec(loop.clock, CLOCK_SIZE), vec(begin.numbers, BEGIN_SIZE)[FIRST_STEP]
+        return START_UNSOLVED
+    clock, first = vec(loop.clock, CLOCK_SIZE), vec(begin.numbers, BEGIN_SIZE)[GIVEN_FIRST_STEP]
     clock[STEP_SIZE] = first if first > 0.0 else _first_step(workspace, clock[MAX_STEP])
     new_history(workspace, method, loop)
     return _begin_forces(drive, instant, workspace, method, loop)
@@ -91,18 +100,18 @@ def _meet(begin: Any, workspace: Any, rates: bool, level: float) -> bool:
         vec(workspace.scale, workspace.n),
         vec(begin.mass, workspace.n),
     )
-    found, place = vec(begin.found, FOUND_SIZE), MOVED_RATES if rates else MOVED
+    found, place = vec(begin.found, START_FOUND_SIZE), MOVED_RATES if rates else MOVED_POSITIONS
     for i in range(workspace.n):
         before[i] = x[i]
     found[place] = -1.0
     if not meet(workspace, rates):
         return False
-    found[place], found[WHO] = 0.0, 0.0
+    found[place], found[MOVED_MOST] = 0.0, 0.0
     for i in range(workspace.n):
         moved = abs(x[i] - before[i]) / (scale[i] * level)
         if not (moved <= found[place] or np.isnan(found[place])):
-            found[place], found[WHO] = moved, i
-    return bool(found[place] <= vec(begin.numbers, BEGIN_SIZE)[START_TOLERANCE])
+            found[place], found[MOVED_MOST] = moved, i
+    return bool(found[place] <= vec(begin.numbers, BEGIN_SIZE)[GIVEN_START_TOLERANCE])
 
 
 @internal
@@ -128,10 +137,10 @@ def _find_touching(begin: Any, drive: Any, workspace: Any) -> int:
         vec(workspace.phidd, workspace.m_ext),
     )
     for k in range(workspace.n_contacts):
-        row, force = rows[k], law[k] == FORCE
+        row, force = rows[k], law[k] == BY_FORCE
         gap, most = phi[row], START_OVERLAP * (position_level(workspace) * scale[row])
         if gap < -most and not force:
-            vec(begin.found, FOUND_SIZE)[WHO] = k
+            vec(begin.found, START_FOUND_SIZE)[MOVED_MOST] = k
             return OVERLAPS
         if gap > most:
             continue
@@ -141,7 +150,7 @@ def _find_touching(begin: Any, drive: Any, workspace: Any) -> int:
             touches = gap < -most or rate < -still
             if not touches and rate <= still:
                 if not _accelerate(workspace):
-                    return NO_START
+                    return START_UNSOLVED
                 touches = phidd[row] < 0.0
         pending[k] = 1 if touches else 0
     return SETTLED
@@ -157,7 +166,7 @@ def _begin_forces(drive: Any, instant: Any, workspace: Any, method: Any, loop: A
     )
     any_force = False
     for k in range(workspace.n_contacts):
-        if pending[k] != 0 and law[k] == FORCE:
+        if pending[k] != 0 and law[k] == BY_FORCE:
             any_force = True
         elif pending[k] != 0:
             kept[k] = 1.0

@@ -5,9 +5,16 @@ from typing import Any
 import numpy as np
 
 from ..assembly.evaluate import evaluate_residuals
-from ..assembly.measure import HEAVIEST, MEASURED, SQUARE, STIFFEST, measure_motion, measure_rows
-from ..assembly.measure import WORK as FOUND_WORK
-from ..assembly.scales import MOST_TIMES, WORK
+from ..assembly.measure import (
+    MEASURED,
+    MEASURED_HEAVIEST,
+    MEASURED_SQUARE,
+    MEASURED_STIFFEST,
+    measure_motion,
+    measure_rows,
+)
+from ..assembly.measure import MEASURED_WORK as FOUND_WORK
+from ..assembly.scales import MOST_TIMES, SMALL_WORK
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, vec
 from ..events.records import SETTLED, WANT_MEMORY
@@ -26,17 +33,17 @@ from ..state.workspace_records import (
     structure_at,
 )
 from .begin_record import (
-    ANGLES,
-    ANGULAR_SPEEDS,
+    ANGLE_TOLERANCE,
+    ANGULAR_SPEED_TOLERANCE,
     BEGIN_SIZE,
+    GIVEN_LENGTH,
+    GIVEN_STEP,
+    GIVEN_TOLERANCE,
     LATER,
-    LENGTH,
-    LENGTHS,
+    LENGTH_TOLERANCE,
     LONGEST_STEP,
-    NEWTON_TOLERANCE,
     OF_SCALES,
-    SPEEDS,
-    STEP,
+    SPEED_TOLERANCE,
     T0,
 )
 from .settings import CONSTRAINT_SHARE, DEFAULT_NEWTON_TOLERANCE, LEAST_EXACTNESS
@@ -112,21 +119,21 @@ def _measure_scales(begin: Any, drive: Any, workspace: Any) -> float:
         mass[i] = 0.0
     measure_motion(workspace, own, vec(begin.usual_v0, n), later, begin.m_joints, mass, found)
     # all at rest without loads: what vibrates gives the time
-    square = found[SQUARE] if found[SQUARE] != 0.0 else found[STIFFEST]
+    square = found[MEASURED_SQUARE] if found[MEASURED_SQUARE] != 0.0 else found[MEASURED_STIFFEST]
     rate = np.sqrt(square) if square != 0.0 else 1.0
-    heaviest = found[HEAVIEST] if found[HEAVIEST] != 0.0 else 1.0
+    heaviest = found[MEASURED_HEAVIEST] if found[MEASURED_HEAVIEST] != 0.0 else 1.0
     energy = found[FOUND_WORK] if found[FOUND_WORK] != 0.0 else heaviest * (rate * rate)
     control = vec(workspace.control, CONTROL_SIZE)
-    control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, found[STIFFEST]
+    control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, found[MEASURED_STIFFEST]
     work, given = vec(workspace.work_scale, workspace.n_ext), vec(begin.work_sizes, workspace.n_ext)
     for i in range(workspace.n_ext):
-        work[i] = WORK * energy
+        work[i] = SMALL_WORK * energy
     rows, accounts = (
         ivec(workspace.contact_rows, workspace.n_contacts),
         ivec(drive.impulse_account, workspace.n_contacts),
     )
     for k in range(workspace.n_contacts):
-        work[accounts[k]] = WORK * energy / (rate * row_scale[rows[k]])
+        work[accounts[k]] = SMALL_WORK * energy / (rate * row_scale[rows[k]])
     for i in range(workspace.n_ext):
         if given[i] > 0.0:
             work[i] = given[i]
@@ -194,8 +201,8 @@ def _set_tolerances(begin: Any, workspace: Any) -> None:
     )
     internal, angle = ivec(begin.internal, workspace.n), ivec(begin.angle, workspace.n)
     atol_q, atol_v = vec(workspace.atol_q, workspace.n), vec(workspace.atol_v, workspace.n)
-    rate, length, given = control[RATE_SCALE], numbers[LENGTH], numbers[NEWTON_TOLERANCE]
-    fixed, finest = numbers[STEP] > 0.0, 1.0
+    rate, length, given = control[RATE_SCALE], numbers[GIVEN_LENGTH], numbers[GIVEN_TOLERANCE]
+    fixed, finest = numbers[GIVEN_STEP] > 0.0, 1.0
     for i in range(workspace.n):
         # the state is the velocity of an internal coordinate, and a length; a tolerance as large as what it is for
         # would let all pass
@@ -208,10 +215,10 @@ def _set_tolerances(begin: Any, workspace: Any) -> None:
             atol_q[i] = tolerance * (1.0 if given > 0.0 else size_q)
             atol_v[i] = tolerance * (1.0 if given > 0.0 else speed)
         else:
-            atol_q[i] = _tolerance(numbers, ANGLES if angle[i] != 0 else LENGTHS, size_q)
-            atol_v[i] = _tolerance(numbers, ANGULAR_SPEEDS if angle[i] != 0 else SPEEDS, size_v)
+            atol_q[i] = _tolerance(numbers, ANGLE_TOLERANCE if angle[i] != 0 else LENGTH_TOLERANCE, size_q)
+            atol_v[i] = _tolerance(numbers, ANGULAR_SPEED_TOLERANCE if angle[i] != 0 else SPEED_TOLERANCE, size_v)
             if internal[i] != 0:
-                atol_v[i] = _tolerance(numbers, LENGTHS, size_v)
+                atol_v[i] = _tolerance(numbers, LENGTH_TOLERANCE, size_v)
             finest = min(finest, atol_q[i] / size_q)
     if fixed:
         finest = given if given > 0.0 else 1.0

@@ -27,10 +27,10 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import OK
 from ..time_loop.drive import drive_at, is_due, loop_at, method_at, workspace_at
-from .begin import NO_START, new_history, start
+from .begin import START_UNSOLVED, new_history, start
 from .begin_measure import measure, place
-from .begin_record import ANGLE, BEGIN_SIZE, LESS, MORE, SIGN, SIGNAL, T0
-from .exchange_record import EXCHANGE, GOAL, INITIAL_ENERGY, INTERVAL, LAST_CHANGE, NOW, TIMES_SIZE
+from .begin_record import BEGIN_SIZE, DRIVER_ANGLE, DRIVER_SIGN, LESS, MORE, SIGNAL, T0
+from .exchange_record import ASKED_TIME, EXCHANGE, INITIAL_ENERGY, INTERVAL, LAST_CHANGE, NOW, TIMES_SIZE
 
 WHOLE_TURN = 2.0 * np.pi
 
@@ -72,7 +72,7 @@ def begin_now(begin: Any) -> int:
     if status != SETTLED:
         return status
     if query(workspace, method, t0) != OK:
-        return NO_START
+        return START_UNSOLVED
     sample = vec(exchange.sample, exchange.sample_length)
     call_sample(drive.write_sample, workspace, sample)
     energy = sample[begin.energies] + sample[begin.energies + 1] + sample[begin.energies + 2]
@@ -109,7 +109,7 @@ def _clear(begin: Any, exchange: Any, drive: Any, workspace: Any, clock: Any) ->
     for k in range(workspace.n_contacts):
         pending[k] = 0
     times = vec(exchange.times, TIMES_SIZE)
-    times[NOW], times[GOAL], times[LAST_CHANGE], times[INTERVAL] = t0, t0, t0, np.inf
+    times[NOW], times[ASKED_TIME], times[LAST_CHANGE], times[INTERVAL] = t0, t0, t0, np.inf
     _count_from_here(drive, t0)
 
 
@@ -121,8 +121,8 @@ def _turn(begin: Any, workspace: Any, n_inputs: int, t0: float) -> None:
     for k in range(begin.n_turned):
         at = turned[k, 1]
         said, _, _ = evaluate_signal(numbers, vec(workspace.inputs, INPUT_SIZE * n_inputs), at + SIGNAL, t0)
-        seen = numbers[at + SIGN] * (said + numbers[at + MORE] - numbers[at + LESS])
-        angle = numbers[at + ANGLE]
+        seen = numbers[at + DRIVER_SIGN] * (said + numbers[at + MORE] - numbers[at + LESS])
+        angle = numbers[at + DRIVER_ANGLE]
         vec(turned[k, 0], 1)[0] = angle + WHOLE_TURN * np.rint((seen - angle) / WHOLE_TURN)
 
 

@@ -18,12 +18,13 @@ BEGIN = np.dtype(
             "work_sizes",                       # (n_ext,) float64: of work accounts that are no energies; 0: none
             "m_joints",                         # rows of joints
             "later", "scale", "mass", "sizes",  # room: (LATER,), (n,), (n,), (m_ext,) float64
-            "found",                            # (FOUND_SIZE,) float64
+            "found",                            # (START_FOUND_SIZE,) float64
             # for runs that begin anew without Python: address of the record of `exchange`; the state, and what it is
             # before a run begins, in words; column of a sample of the first of three energies
             "exchange", "state", "blank", "n_blank", "energies",
             # words that are angles at the start whose whole turns a driver says (`native/turning.py`): (n, 2) int64,
-            # address, and number of the first of (ANGLE, SIGN, MORE, LESS, its signal) in `turn_numbers`, float64
+            # address, and number of the first of (DRIVER_ANGLE, DRIVER_SIGN, MORE, LESS, its signal) in `turn_numbers`,
+            # float64
             "turned", "n_turned", "turn_numbers", "n_turn_numbers",
         )
     ]
@@ -31,22 +32,22 @@ BEGIN = np.dtype(
 
 # columns of `numbers`
 T0 = 0  # s
-LENGTH, LONGEST_STEP = 1, 2  # size of the mechanism, m; step beyond which error control misses a time function, s
-START_TOLERANCE = 3
-STEP, FIRST_STEP, NEWTON_TOLERANCE = 4, 5, 6  # settings; 0: not given
-LENGTHS, ANGLES, SPEEDS, ANGULAR_SPEEDS = 7, 8, 9, 10  # absolute tolerances
+GIVEN_LENGTH, LONGEST_STEP = 1, 2  # size of the mechanism, m; step beyond which error control misses a time function, s
+GIVEN_START_TOLERANCE = 3
+GIVEN_STEP, GIVEN_FIRST_STEP, GIVEN_TOLERANCE = 4, 5, 6  # settings; 0: not given
+LENGTH_TOLERANCE, ANGLE_TOLERANCE, SPEED_TOLERANCE, ANGULAR_SPEED_TOLERANCE = 7, 8, 9, 10  # absolute tolerances
 OF_SCALES = 4  # so many columns behind each: 1 where it is a part of the model's own scales
 LOOK_AT_RANK = 15  # 1: rows that repeat others nearly are no start, as long as it is not known that they may
 BEGIN_SIZE = 16
 
 # columns of `found`: how far positions and velocities were moved onto the constraints, as a part of their sizes, -1
 # where that did not succeed; and which coordinate moved most, or which contact overlaps
-MOVED, MOVED_RATES, WHO = 0, 1, 2
-FOUND_SIZE = 3
+MOVED_POSITIONS, MOVED_RATES, MOVED_MOST = 0, 1, 2
+START_FOUND_SIZE = 3
 
-# of each angle in `turn_numbers`: of those that differ from ANGLE by whole turns the one nearest to
-# SIGN (signal + MORE - LESS)
-ANGLE, SIGN, MORE, LESS, SIGNAL = range(5)
+# of each angle in `turn_numbers`: of those that differ from DRIVER_ANGLE by whole turns the one nearest to
+# DRIVER_SIGN (signal + MORE - LESS)
+DRIVER_ANGLE, DRIVER_SIGN, MORE, LESS, SIGNAL = range(5)
 
 LATER = MOST_TIMES + 3
 """Now, later times of forces and drivers, and two more within the longest step."""

@@ -10,8 +10,8 @@ from ..compiled.image import Take, twin
 from ..compiled.records import ArrayRecord
 from ..tolerances import DEFAULT_ATOL, OfScales
 from . import begin_record as places
-from .begin_record import BEGIN, BEGIN_SIZE, FOUND_SIZE, LATER
-from .settings import KINDS, Settings
+from .begin_record import BEGIN, BEGIN_SIZE, LATER, START_FOUND_SIZE
+from .settings import TOLERANCE_KINDS, Settings
 
 if TYPE_CHECKING:
     from .engine import Engine
@@ -32,7 +32,7 @@ class Beginning:
     def __init__(self, sim: "Engine") -> None:
         assembly = sim.assembly
         n, given = assembly.n, assembly.row_scale is not None
-        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1, "found": FOUND_SIZE}
+        room = {"later": LATER, "scale": n, "mass": n, "sizes": assembly.m + 1, "found": START_FOUND_SIZE}
         self.record = ArrayRecord(
             BEGIN,
             {
@@ -59,7 +59,7 @@ class Beginning:
         numbers[places.NEWTON_TOLERANCE] = s.newton_tolerance or 0.0
         numbers[places.LOOK_AT_RANK] = float(s.redundant != "refuse")
         for kind, place in zip(
-            KINDS, (places.LENGTHS, places.ANGLES, places.SPEEDS, places.ANGULAR_SPEEDS), strict=True
+            TOLERANCE_KINDS, (places.LENGTHS, places.ANGLES, places.SPEEDS, places.ANGULAR_SPEEDS), strict=True
         ):
             atol = s.atol.get(kind, DEFAULT_ATOL) if not isinstance(s.atol, int | float) else s.atol
             numbers[place], numbers[place + places.OF_SCALES] = share * float(atol), float(isinstance(atol, OfScales))

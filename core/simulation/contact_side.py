@@ -16,7 +16,7 @@ from ..assembly.scales import Scales
 from ..assembly.workspace import Workspace
 from ..errors import ConsistencyError
 from ..events import Event
-from ..events.records import SETTLED, WANT_MEMORY, WANT_ROOM
+from ..events.records import SETTLED, WANT_MEMORY, WANTS_ROOM
 from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
@@ -93,7 +93,7 @@ class ContactSide:
 
     def build_wanted(self, status: int) -> None:
         """What compiled code needs to settle pending events."""
-        if status == WANT_ROOM:
+        if status == WANTS_ROOM:
             self.drive.give_room()
         else:
             self.workspace.give_room()

@@ -43,17 +43,17 @@ from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS
 from ..time_loop.drive import drive_at, drive_on, loop_at, method_at, workspace_at
 from . import advance
 from .exchange_record import (
+    ASKED_TIME,
     EXCHANGE,
-    FIRST,
-    FIRST_STEP,
-    GOAL,
+    FIRST_RATE,
     INITIAL_ENERGY,
     INTERVAL,
     LAST_CHANGE,
     NOW,
     QUERY_SIGNATURE,
     RATES_SIZE,
-    SECOND,
+    SECOND_RATE,
+    STEPS_BEFORE,
     TIMES_SIZE,
     call_query,
 )
@@ -89,7 +89,7 @@ def _goes_on(exchange: Any, workspace: Any, k: int, t: float) -> bool:
         mat(workspace.inputs, exchange.n_inputs, INPUT_SIZE)[k],
         mat(exchange.rates, exchange.n_inputs, RATES_SIZE)[k],
     )
-    value, first, second = vec(exchange.inputs, exchange.n_inputs)[k], rates[FIRST], rates[SECOND]
+    value, first, second = vec(exchange.inputs, exchange.n_inputs)[k], rates[FIRST_RATE], rates[SECOND_RATE]
     if row[1] == 0.0 and row[2] == 0.0:
         return value == row[0] and first == 0.0 and second == 0.0
     x = t - row[3]
@@ -124,7 +124,7 @@ def _change_inputs(exchange: Any, workspace: Any, method: Any, loop: Any, declin
         for j in range(INPUT_SIZE):
             before[k, j] = rows[k, j]
         if not _goes_on(exchange, workspace, k, t):
-            rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST], rates[k, SECOND]
+            rows[k, 0], rows[k, 1], rows[k, 2] = wanted[k], rates[k, FIRST_RATE], rates[k, SECOND_RATE]
             # since when does not matter to what stays as it is
             rows[k, INPUT_SIZE - 1] = t if rows[k, 1] != 0.0 or rows[k, 2] != 0.0 else 0.0
     if status == OK:
@@ -154,7 +154,7 @@ def _stop(times: Any) -> float:
     expected = times[LAST_CHANGE] + times[INTERVAL]
     if not times[NOW] < expected < np.inf:
         return np.inf
-    return times[GOAL] if expected <= times[GOAL] + PUNCTUAL * times[INTERVAL] else expected
+    return times[ASKED_TIME] if expected <= times[ASKED_TIME] + PUNCTUAL * times[INTERVAL] else expected
 
 
 @compiled_unlocked
@@ -166,8 +166,8 @@ def exchange(exchange: Any) -> int:
         return DECLINED
     times = vec(exchange.times, TIMES_SIZE)
     goals, counts = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE)
-    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[GOAL], _stop(times), exchange.chunk
-    times[FIRST_STEP] = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
+    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[ASKED_TIME], _stop(times), exchange.chunk
+    times[STEPS_BEFORE] = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
     code = drive_on(drive, workspace, method, loop, False)
     if code != REACHED:
         return code
@@ -259,7 +259,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
         return None
     clock = crossing.clock
     crossing.wanted[:] = inputs
-    clock[NOW], clock[GOAL], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
+    clock[NOW], clock[ASKED_TIME], clock[INITIAL_ENERGY] = now, t, sim.table.initial_energy
     clock[LAST_CHANGE], clock[INTERVAL] = times
     if read != crossing.reads:
         crossing.set_reads(read)
@@ -272,7 +272,7 @@ def exchange_values(sim: "Simulation", inputs: Sequence[float], t: float, read: 
     if clock[LAST_CHANGE] != times[0]:
         sim.input_times = clock[LAST_CHANGE], clock[INTERVAL]
     if code < DECLINED:
-        sim.go_on(t, int(clock[FIRST_STEP]), code)
+        sim.go_on(t, int(clock[STEPS_BEFORE]), code)
     sim.t = float(t)
     if code != READ:
         return None

@@ -40,13 +40,13 @@ OF_GROUPS = 3
 
 # columns of `times`
 NOW = 0
-GOAL = 1
+ASKED_TIME = 1
 LAST_CHANGE, INTERVAL = 2, 3  # of inputs
 INITIAL_ENERGY = 4  # J
-FIRST_STEP = 5  # steps made, and instants with events, before
+STEPS_BEFORE = 5  # steps made, and instants with events, before
 TIMES_SIZE = 6
 # columns of `rates`
-FIRST, SECOND = 0, 1
+FIRST_RATE, SECOND_RATE = 0, 1
 SINCE = 2  # when they were given: for whoever sets them
 RATES_SIZE = 3
 

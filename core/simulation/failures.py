@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..assembly.partition import prepare
-from ..assembly.structure_switch import ENGAGED, HELD, KINDS
+from ..assembly.structure_switch import ENGAGED, HELD, STRUCTURE_KINDS
 from ..errors import ConsistencyError, SimulationError
 from ..events.records import (
     ENDLESS_BLOWS,
@@ -90,7 +90,7 @@ def _inconsistent(sim: "ContactSide") -> ConsistencyError:
     try:
         sim.workspace.engage_wanted()
         # (a contact that is open has no gradients)
-        kinds = sim.workspace.arrays["wanted"][: len(sim.assembly.contacts)] % KINDS
+        kinds = sim.workspace.arrays["wanted"][: len(sim.assembly.contacts)] % STRUCTURE_KINDS
         sim.memory.mode[: len(kinds)] = np.select([kinds >= HELD, kinds == ENGAGED], [CLOSED, ACTIVE], OPEN)
         prepare(sim.workspace)
     except ConsistencyError as error:

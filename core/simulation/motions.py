@@ -11,7 +11,7 @@ from ..assembly.assembly import Assembly
 from ..assembly.evaluate import evaluate_residuals
 from ..assembly.workspace import Workspace
 from ..errors import SimulationError
-from ..model.motion import DURATION, JUMP, RATE_JUMP, SINCE, InputMotion
+from ..model.motion import INPUT_DURATION, INPUT_JUMP, INPUT_RATE_JUMP, INPUT_SINCE, InputMotion
 from .restore import restart_here
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def lead(sim: "Simulation", states: Iterable[State]) -> None:
     """Let motions in these states follow what the channels say now. At the start they begin there."""
     inputs = sim.workspace.arrays["inputs"]
     for motion, x, v in states:
-        inputs[motion.jumps, SINCE] = sim.t
+        inputs[motion.jumps, INPUT_SINCE] = sim.t
         said_x, said_v = motion.said(inputs, sim.t)
         jumps = (0.0, 0.0) if at_start(sim) else (x - said_x, v - said_v)
         inputs[motion.jumps] = (*jumps, sim.t, 0.0)
@@ -106,11 +106,11 @@ def close_jumps(sim: "Simulation", t: float) -> None:
     changed = False
     for motion in sim.assembly.motions:
         row = inputs[motion.jumps]
-        if row[DURATION] == 0.0 and (row[JUMP] != 0.0 or row[RATE_JUMP] != 0.0) and t > sim.t:
+        if row[INPUT_DURATION] == 0.0 and (row[INPUT_JUMP] != 0.0 or row[INPUT_RATE_JUMP] != 0.0) and t > sim.t:
             _refuse_long_way(sim, motion, t)
-            row[DURATION] = t - row[SINCE]
+            row[INPUT_DURATION] = t - row[INPUT_SINCE]
             changed = True
-            _warn_if_large(sim, motion, float(row[JUMP]), float(row[DURATION]))
+            _warn_if_large(sim, motion, float(row[INPUT_JUMP]), float(row[INPUT_DURATION]))
     if changed:
         restart_here(sim)
 

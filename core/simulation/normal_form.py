@@ -15,7 +15,7 @@ from ..assembly.sticking_force import in_space
 from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..events.impact_law_codes import FORCE, MASSLESS
+from ..events.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..events.zeno import MANY_TOUCH, pushed_lately
 from ..methods.history import history_row, history_time
 from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, NEXT_NORM, RING_SIZE
@@ -31,13 +31,13 @@ from ..state.run_records import (
     COUNTS_SIZE,
     CROWDED,
     DRIVE_TYPE,
+    EQUAL_STEPS,
     EVENTS,
     FIXED_STEP,
     GOAL,
     GOALS_SIZE,
     HANDLED,
     HANDLED_AT,
-    HELD,
     HERE,
     LAST_STOP,
     PASSED,
@@ -59,8 +59,8 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CORRECTION, FAILED_NORM, RATE_SIZE, WORST_CONDITION
 from ..time_loop.drive import drive_at, loop_at, method_at, workspace_at
-from .exchange_record import EXCHANGE, FIRST_STEP, NOW, TIMES_SIZE
-from .exchange_record import GOAL as GOAL_TIME
+from .exchange_record import ASKED_TIME as GOAL_TIME
+from .exchange_record import EXCHANGE, NOW, STEPS_BEFORE, TIMES_SIZE
 
 OF_COPY = (DRIVE_TYPE, types.int64)
 AT_SHIFT = (types.from_dtype(EXCHANGE), types.int64)
@@ -88,7 +88,7 @@ def normalise(exchange: Any, shift: int) -> bool:
     counts[BUDGET] = counts[HANDLED] = counts[EVENTS] = counts[STATUS] = 0
     if goals[HANDLED_AT] != history_time(method, 0):
         goals[HANDLED_AT], counts[HERE] = np.nan, 0
-    times[NOW] = times[GOAL_TIME] = times[FIRST_STEP] = 0.0
+    times[NOW] = times[GOAL_TIME] = times[STEPS_BEFORE] = 0.0
     wanted, chosen = (
         ivec(workspace.wanted + shift, workspace.n_contacts),
         ivec(workspace.wanted_dependent + shift, workspace.n + workspace.m_ext),
@@ -166,9 +166,9 @@ def _forget_in_clock(drive: Any, workspace: Any, method: Any, loop: Any, shift: 
     clock[STOP_TIME] = clock[TRIAL_STEP] = clock[TARGET_TIME] = clock[BREAK_TIME] = clock[REJECTED_HERE] = 0.0
     if clock[FIXED_STEP] > 0.0:
         clock[STEP_SIZE] = clock[FIXED_STEP]
-        clock[HELD] = clock[PREVIOUS_NORM] = 0.0
+        clock[EQUAL_STEPS] = clock[PREVIOUS_NORM] = 0.0
     if loop.rows == 1:
-        clock[HELD] = 0.0
+        clock[EQUAL_STEPS] = 0.0
     if clock[PREVIOUS_NORM] == 0.0:
         clock[PREVIOUS_RATIO] = 0.0
     elif clock[B2] == 0.0 and clock[A2] == 0.0:
@@ -196,9 +196,9 @@ def _forget_in_memories(drive: Any, workspace: Any, loop: Any, shift: int) -> No
         memory = memories[k]
         for block in range(0 if pushing else BLOCKS):
             memory.step_force[block] = 0.0
-        if law[k] == FORCE or memory.mode != CLOSED:
+        if law[k] == BY_FORCE or memory.mode != CLOSED:
             memory.implied_rows = 0.0
-        if law[k] == FORCE:
+        if law[k] == BY_FORCE:
             memory.largest_approach = 0.0
             if memory.mode == OPEN:
                 memory.approach_speed = memory.begun_impulse = memory.begun_loss = memory.laid_mass = 0.0
@@ -206,7 +206,7 @@ def _forget_in_memories(drive: Any, workspace: Any, loop: Any, shift: int) -> No
         memory.laid_mass = 0.0
         if not in_space(workspace, k):
             memory.tangent_angle = memory.tangent_axis = memory.slow_sliding = memory.sliding_lean = 0.0
-        if law[k] != MASSLESS:
+        if law[k] != AT_MASSLESS:
             memory.approach_speed = 0.0
             leans = abs(memory.slide_mode) == 1.0 or ivec(workspace.contact_companion, workspace.n_contacts)[k] != 0
             if memory.mode != CLOSED or not leans:

@@ -13,18 +13,18 @@ from ..compiled.views import imat, ivec, vec
 from ..methods.history import bridge_rows, history_time
 from ..methods.multistep import rows_available
 from ..model.derived import HEAD_SIZE, derive_group
-from ..recovery.near_singular import STRAINED
+from ..recovery.near_singular import STRAINED_GROWTH
 from ..state.modes import ACTIVE, CLOSED
 from ..state.workspace_records import LEAST_CONDITION, OK, RATE_SIZE, WORST_CONDITION
 from ..time_loop.sample import write_row
-from .exchange_record import ENERGIES, FORCES, GOAL, INITIAL_ENERGY, OF_GROUPS, TIMES_SIZE, call_query
+from .exchange_record import ASKED_TIME, ENERGIES, FORCES, INITIAL_ENERGY, OF_GROUPS, TIMES_SIZE, call_query
 
 
 @internal
 def near_singular(workspace: Any, method: Any, t: float) -> bool:
     """`strained` at time t."""
     rate = vec(workspace.rate, RATE_SIZE)
-    strained = rate[WORST_CONDITION] > STRAINED * rate[LEAST_CONDITION] > 0.0
+    strained = rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
     inside = rows_available(method) > 1 and history_time(method, 1) < t < history_time(method, 0)
     return (strained and inside) or bridge_rows(method) > 0
 
@@ -32,7 +32,7 @@ def near_singular(workspace: Any, method: Any, t: float) -> bool:
 @internal
 def read_at_goal(exchange: Any, workspace: Any, method: Any) -> bool:
     """The channels at the goal; False if they are not to be had, or one is not finite."""
-    t = vec(exchange.times, TIMES_SIZE)[GOAL]
+    t = vec(exchange.times, TIMES_SIZE)[ASKED_TIME]
     wants, kinds = ivec(exchange.wants, exchange.n_wants), ivec(exchange.kinds, exchange.n_channels)
     address = exchange.query if wants[FORCES] != 0 else exchange.query_motion
     if near_singular(workspace, method, t) or call_query(address, workspace, method, t) != OK:

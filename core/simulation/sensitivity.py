@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..errors import SimulationError
 from ..linalg import SingularMatrixError
 from ..stage.joints import evaluate_joints
-from .slopes import UNSOLVED, along_inputs
+from .slopes import SLOPES_UNSOLVED, along_inputs
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -55,7 +55,7 @@ def _along(sim: "Simulation", seed: Vector, found: Vector) -> None:
     sim.sample()  # the present time becomes the workspace's point
     exchange = sim.outside.record
     status = along_inputs(exchange, seed, found)
-    if status not in (0, UNSOLVED):
+    if status not in (0, SLOPES_UNSOLVED):
         evaluate_joints(sim.workspace.record)
         try:
             sim.workspace.structure.kkt_query.analyze(sim.workspace.arrays["values"])

@@ -18,7 +18,7 @@ from ..state.workspace_records import (
     ACCELERATION,
     ACCELERATION_TOLERANCE,
     ATOL,
-    LINEAR,
+    IS_LINEAR,
     MAX_INNER,
     MOST_CONDITION,
     MOST_SLACK,
@@ -39,7 +39,7 @@ CONSTRAINT_SHARE = 0.002
 level of the coordinates (`position_level`) enlarge it by ten and more."""
 LEAST_EXACTNESS = 1e-2
 """Rounding allows no more (`EXACTNESS`)."""
-KINDS = ("length", "angle", "speed", "angular_speed")
+TOLERANCE_KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 SINGULAR_NOISE = 2.5e13
 """A hundredth of the inverse of rounding, since the outer loop stops at a hundredth of the tolerance; and a tenth for
@@ -82,9 +82,9 @@ class Settings:
                 continue
             _check_positive(name, value, infinite=name == "max_step")
         if isinstance(self.atol, Mapping):
-            unknown = set(self.atol) - set(KINDS)
+            unknown = set(self.atol) - set(TOLERANCE_KINDS)
             if unknown:
-                raise ModelError(f"atol has no kind {sorted(unknown)}; there are {list(KINDS)}")
+                raise ModelError(f"atol has no kind {sorted(unknown)}; there are {list(TOLERANCE_KINDS)}")
             for kind, value in self.atol.items():
                 _check_positive(f"atol of {kind}", value)
         else:
@@ -149,6 +149,6 @@ def set_control(settings: Settings, formula: Formula, assembly: Assembly, contro
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
     control[MAX_INNER] = 13.0
     control[MOST_SLACK] = formula.slack
-    control[LINEAR] = float(assembly.linear)
+    control[IS_LINEAR] = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
     control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))

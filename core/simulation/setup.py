@@ -29,8 +29,8 @@ from ..state.run_records import (
     EAGER,
     FIND_EVENTS_SIGNATURE,
     FIXED_STEP,
-    GROWTH,
     HOLD,
+    LARGEST_GROWTH,
     LOG_COLUMNS,
     LOOP,
     MAX_STEP,
@@ -83,7 +83,7 @@ def build_method(formula: Formula, settings: Settings, has_waves: bool, state: N
 def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float) -> None:
     """What the time loop knows about steps before the first one (`records.py`)."""
     clock[FIXED_STEP] = settings.step or 0.0
-    clock[GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
+    clock[LARGEST_GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
     controller = CONTROLLERS[settings.controller]
     clock[B1], clock[B2], clock[A2] = controller.b1, controller.b2, controller.a2
     clock[EAGER] = float(settings.fallback)

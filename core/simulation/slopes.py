@@ -29,7 +29,7 @@ from .read_channels import put_channels
 LARGE = 2.0**40
 """s relative to what the residual holds without the change: its rounding is 2^-40 of itself beside the change."""
 REFINEMENTS = 2
-UNSOLVED = 1000
+SLOPES_UNSOLVED = 1000
 """`along_inputs`: the system is too near a singular one, or a value is not finite."""
 
 _REALS = types.Array(types.float64, 1, "C")
@@ -98,7 +98,7 @@ def _change_of_friction(workspace: Any, k: int, held: Any, size: float) -> float
 
 @internal
 def _solve_joints(workspace: Any, x: Any, load: Any) -> int:
-    """[M Phi_q^T; Phi_q 0] x = (-load, 0), the matrix being factorised: OK or UNSOLVED."""
+    """[M Phi_q^T; Phi_q 0] x = (-load, 0), the matrix being factorised: OK or SLOPES_UNSOLVED."""
     n, size = workspace.n, workspace.n + workspace.m_act + workspace.n_implied
     lu = lu_at(workspace.kkt_query)
     count = lu.nnz
@@ -123,14 +123,14 @@ def _solve_joints(workspace: Any, x: Any, load: Any) -> int:
     for i in range(size):
         left = abs((-load[i] if i < n else 0.0) - product[i])
         if not left <= SENSITIVITY_SOLVED * (most + sizes[i]):
-            return UNSOLVED
+            return SLOPES_UNSOLVED
     return OK
 
 
 @compiled
 def along_inputs(exchange: Any, seed: Any, found: Any) -> int:
-    """Derivatives of all channels along `seed` (inputs,), whose largest number is 1: OK, UNSOLVED, or what `factor`
-    returns for the pivots that there are. The workspace's point is changed."""
+    """Derivatives of all channels along `seed` (inputs,), whose largest number is 1: OK, SLOPES_UNSOLVED, or what
+    `factor` returns for the pivots that there are. The workspace's point is changed."""
     workspace = workspace_at(exchange.workspace)
     n, multipliers = workspace.n, workspace.m_act + workspace.n_implied
     active = ivec(workspace.active, multipliers)
@@ -165,7 +165,7 @@ def along_inputs(exchange: Any, seed: Any, found: Any) -> int:
         return int(status)
     change = np.zeros(n + multipliers)
     if _solve_joints(workspace, change, load) != OK:
-        return UNSOLVED
+        return SLOPES_UNSOLVED
     for i in range(n):
         a[i] = size * change[i]
     for i in range(multipliers):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..assembly.state_fields import STATE
+from ..assembly.state_fields import STATE_ARRAYS
 from ..assembly.structure_switch import Key
 from ..state.run_records import HANDLED_AT, HERE
 from .normal_form import normalise_buffer
@@ -19,8 +19,6 @@ from .normal_form import normalise_buffer
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-FACTORIZATIONS = ("kkt", "kkt_query", "lu_d", "lu_p")
-"""The last one is there in models with velocity-level rows only."""
 OF_QUERY = 1
 """Whose factors are computed anew whenever they are used: what decides of them are pivots and limits."""
 _OF_METHOD = ("history", "times", "ring", "parameters", "weights", "error", "choice")
@@ -46,7 +44,7 @@ class Snapshot(NamedTuple):
     layout: np.dtype
     """Its type."""
     factors: tuple[Factors, ...]
-    """In the order of FACTORIZATIONS."""
+    """In the order of MATRICES."""
     dependent: NDArray[np.int64]
     probe: NDArray[np.float64]
     compatibility: NDArray[np.float64]
@@ -69,12 +67,12 @@ class Snapshot(NamedTuple):
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The arrays by name."""
-        names = (*STATE, *(f"method_{name}" for name in _OF_METHOD), "clock", "watch", "guard")
+        names = (*STATE_ARRAYS, *(f"method_{name}" for name in _OF_METHOD), "clock", "watch", "guard")
         state = self.buffer.view(self.layout)
         arrays: dict[str, NDArray[Any]] = {name: state[name][0] for name in names}
         arrays["dependent"], arrays["probe"] = self.dependent, self.probe
         arrays["compatibility"] = self.compatibility
-        for name, factors in zip(FACTORIZATIONS, self.factors, strict=False):
+        for name, factors in zip(MATRICES, self.factors, strict=False):
             arrays |= {f"{name}_{part}": x for part, x in factors._asdict().items()}
         return arrays
 
@@ -178,7 +176,7 @@ def snapshot_of(
         tuple(
             [
                 Factors(*(arrays[f"{name}_{part}"] for part in Factors._fields))
-                for name in FACTORIZATIONS
+                for name in MATRICES
                 if f"{name}_perm_r" in arrays
             ]
         ),

@@ -20,9 +20,9 @@ from ..rounding import START_MOVED
 from ..state.modes import ACTIVE
 from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
 from . import motions
-from .begin import NO_POSITIONS, NO_START, NO_VELOCITIES, OVERLAPS, SINGULAR_START
+from .begin import NO_POSITIONS, NO_VELOCITIES, OVERLAPS, SINGULAR_START, START_UNSOLVED
 from .begin_now import measure_now, place_now, start_now
-from .begin_record import LOOK_AT_RANK, MOVED, MOVED_RATES, START_TOLERANCE, WHO
+from .begin_record import GIVEN_START_TOLERANCE, LOOK_AT_RANK, MOVED_MOST, MOVED_POSITIONS, MOVED_RATES
 from .failures import failure_of
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def start(sim: "Engine") -> None:
     except BaseException:
         sim.drive.take_pending()  # who goes on from an earlier state does not want them
         raise
-    for level, place in (("positions q0", MOVED), ("velocities v0", MOVED_RATES)):
+    for level, place in (("positions q0", MOVED_POSITIONS), ("velocities v0", MOVED_RATES)):
         if (moved := sim.beginning.found[place]) > START_MOVED:
             logger.info("%s moved by up to %.3g (relative) to meet the constraints", level, moved)
     if sim.redundant:
@@ -119,7 +119,7 @@ def _follow_inputs(sim: "Engine", before: Kept) -> bool:
     far = float(np.max(np.abs(offsets[:, 0]))) / motions.size_of(sim.assembly)
     ways = range(math.ceil(far / WAY_AT_ONCE) - 1, -1, -1) if far > WAY_AT_ONCE else (0,)
     try:
-        numbers[START_TOLERANCE] = np.inf
+        numbers[GIVEN_START_TOLERANCE] = np.inf
         for k in ways:
             # bodies go with the inputs in small ways: of several ways to put them together theirs is kept
             arrays["q0"][:] = sim.workspace.arrays["q"][: sim.assembly.n]
@@ -129,7 +129,7 @@ def _follow_inputs(sim: "Engine", before: Kept) -> bool:
             if _attempt(sim) != SETTLED:
                 return False
     finally:
-        numbers[START_TOLERANCE], arrays["q0"][:] = tolerance, q0
+        numbers[GIVEN_START_TOLERANCE], arrays["q0"][:] = tolerance, q0
     return True
 
 
@@ -201,7 +201,7 @@ def _failure(sim: "Engine", status: int) -> ConsistencyError | SimulationError:
     if status in (NO_POSITIONS, NO_VELOCITIES):
         return _far_from_constraints(sim, status == NO_VELOCITIES)
     if status == OVERLAPS:
-        k = int(sim.beginning.found[WHO])
+        k = int(sim.beginning.found[MOVED_MOST])
         return ConsistencyError(
             f"contact '{sim.assembly.contacts[k].name}' starts with the shapes overlapping by {-sim.gap(k):.3g} "
             f"{sim.assembly.contacts[k].units[0]}; a constraint contact needs a gap >= 0 at the start"
@@ -211,7 +211,7 @@ def _failure(sim: "Engine", status: int) -> ConsistencyError | SimulationError:
             prepare(sim.workspace)
         except ConsistencyError as error:
             return error
-    if status == NO_START:
+    if status == START_UNSOLVED:
         return sim.no_accelerations()
     return failure_of(sim, status)
 
@@ -220,7 +220,7 @@ def _far_from_constraints(sim: "Engine", rates: bool) -> ConsistencyError:
     """The refusal of positions (or velocities) that violate the constraints beyond repair."""
     assembly, arrays, found = sim.assembly, sim.workspace.arrays, sim.beginning.found
     x, residual, level = ("v", "phid", "velocities v0") if rates else ("q", "phi", "positions q0")
-    moved, who = float(found[MOVED_RATES if rates else MOVED]), int(found[WHO])
+    moved, who = float(found[MOVED_RATES if rates else MOVED_POSITIONS]), int(found[MOVED_MOST])
     given, now = sim.beginning.record.arrays["mass"][: assembly.n], arrays[x][: assembly.n].copy()
     detail = "no consistent ones were found near by"
     if moved != -1.0:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assembly.slots import MATRICES
 from ..errors import ModelError
 from ..events import Event
 from ..methods.order_selection import MOST_K
@@ -21,10 +22,10 @@ from ..state.run_records import (
     B1,
     B2,
     EAGER,
+    EQUAL_STEPS,
     FIXED_STEP,
-    GROWTH,
-    HELD,
     HOLD,
+    LARGEST_GROWTH,
     MAX_STEP,
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
@@ -32,7 +33,6 @@ from ..state.run_records import (
     STEP_SIZE,
 )
 from ..state.workspace_records import COUNTERS_SIZE
-from .snapshot import FACTORIZATIONS
 from .state import State
 
 if TYPE_CHECKING:
@@ -54,9 +54,9 @@ _FINITE = (
     "guard",
 )
 _NO_NAN = ("inputs", "watch", "clock")
-_SETTINGS = (MAX_STEP, FIXED_STEP, GROWTH, HOLD, EAGER, B1, B2, A2)
+_SETTINGS = (MAX_STEP, FIXED_STEP, LARGEST_GROWTH, HOLD, EAGER, B1, B2, A2)
 """Columns of the clock that never change in a run."""
-_NOT_NEGATIVE = (HELD, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
+_NOT_NEGATIVE = (EQUAL_STEPS, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
 _LARGEST_COUNT = 2**53
 _HUGE = 1e300
 _SLIDES = (STICKS, IDLE, 1.0, -1.0)
@@ -189,7 +189,7 @@ def _check_arrays(state: State, own: State, sizes: dict[str, int]) -> None:
         _need(
             name, array.dtype == x.dtype and array.ndim == x.ndim, f"is of type {array.dtype} and shape {array.shape}"
         )
-        if not name.startswith(FACTORIZATIONS):
+        if not name.startswith(MATRICES):
             shape = (sizes[name],) if name in sizes else x.shape
             _need(name, array.shape == shape, f"has shape {array.shape}, needed is {shape}")
     for name in _FINITE:
@@ -199,7 +199,7 @@ def _check_arrays(state: State, own: State, sizes: dict[str, int]) -> None:
 
 
 def _check_factorizations(arrays: dict[str, NDArray[Any]], sizes: dict[str, int], size: int) -> None:
-    for name in FACTORIZATIONS:
+    for name in MATRICES:
         if f"{name}_perm_r" not in arrays:
             continue
         n = sizes.get(name, size)

@@ -26,9 +26,9 @@ from ..state.workspace_records import (
     FACTOR_CV,
     FAILED_NORM,
     INNER,
+    IS_LINEAR,
     LAST_INNER,
     LAST_OUTER,
-    LINEAR,
     MAX_OUTER,
     MOST_SLACK,
     NEWTON_TOLERANCE,
@@ -211,7 +211,7 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
             return NOT_FINITE
         add_increment(workspace, c_q, c_v)
         evaluate_constraints(workspace)
-        if control[LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
+        if control[IS_LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
             # the matrices are those of the equations: a second increment would be rounding
             rate[LAST_OUTER], status = 1.0, OK
             break

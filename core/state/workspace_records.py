@@ -4,6 +4,8 @@ import numpy as np
 
 from ..compiled import types
 from ..compiled.jit import caller, record_view
+from ..linalg.record import OK as OK
+from ..linalg.record import WANT_ROOM as WANT_ROOM  # also what building a structure returns
 
 WORKSPACE = np.dtype(
     [
@@ -125,8 +127,6 @@ OF_KKT, OF_D, WORDS, REALS = 0, 3, 6, 7
 """Entries of `needs`: three of the matrices of the equations and three of Phi_qd (`linalg/record.py`), and two of the
 structures themselves."""
 NEEDS = 8
-WANT_ROOM = 3
-"""What building a structure returns where there is too little memory, as `linalg` does."""
 ENGAGE_SIGNATURE = types.int64(WORKSPACE_TYPE)
 call_engage = caller(ENGAGE_SIGNATURE)
 building_at = record_view(BUILDING_TYPE)
@@ -158,7 +158,7 @@ STAGE_BETA = 10
 OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, for formulas that solve coupled stages themselves
 MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
 EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
-LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
+IS_LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
 RATE_SCALE = 15  # inverse of the model's own time, 1/s
 ENERGY_SCALE = 16  # work of its forces along its lengths, J
 STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
@@ -191,7 +191,6 @@ LEFT_APPROACHES = 13  # instants that have left an approach (`events/residual_ap
 COUNTERS_SIZE = 14
 
 # status of stages, steps and of the loop
-OK = 0
 OUTER_DIVERGED = 1
 INNER_DIVERGED = 2
 SINGULAR = 3

@@ -5,7 +5,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import imat, vec
 from ..contacts.geometry_kinds import EQUATIONS, OWN
-from ..event_detection.contact_evaluation import KIND, NEAR_SIZE
+from ..event_detection.contact_evaluation import NEAR_KIND, NEAR_SIZE
 from ..methods.history import history_row
 
 BENDING = 1e4
@@ -32,7 +32,7 @@ def leap_of(workspace: Any, method: Any, loop: Any, h: float) -> float:
         return largest
     near = imat(loop.near, workspace.n_contacts, NEAR_SIZE)
     for k in range(workspace.n_contacts):
-        if near[k, KIND] == OWN or near[k, KIND] == EQUATIONS:
+        if near[k, NEAR_KIND] == OWN or near[k, NEAR_KIND] == EQUATIONS:
             return largest
     v, a, n, largest = vec(workspace.v, workspace.n), vec(workspace.a, workspace.n), workspace.n_ext, 0.0
     for i in range(workspace.n):

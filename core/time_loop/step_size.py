@@ -4,7 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
-from ..state.run_records import A2, B1, B2, CLOCK_SIZE, GROWTH, HELD, PREVIOUS_NORM, PREVIOUS_RATIO
+from ..state.run_records import A2, B1, B2, CLOCK_SIZE, EQUAL_STEPS, LARGEST_GROWTH, PREVIOUS_NORM, PREVIOUS_RATIO
 
 SAFETY = 0.9
 MIN_FACTOR = 0.2
@@ -44,16 +44,16 @@ def next_step(loop: Any, h: float, error: float, order: float, multistep: bool, 
     """Step to follow an accepted one of size h.
 
     A multistep formula grows only after `hold` equal steps, and only if it pays: growing at every step is not
-    zero-stable for more than a few steps, growing by GROWTH between such runs of equal steps is (companion matrices
-    of the variable-step formulas), and equal steps keep the coefficients.
+    zero-stable for more than a few steps, growing by LARGEST_GROWTH between such runs of equal steps is (companion
+    matrices of the variable-step formulas), and equal steps keep the coefficients.
     """
     clock = vec(loop.clock, CLOCK_SIZE)
     if not multistep:
-        clock[HELD] = 0.0
+        clock[EQUAL_STEPS] = 0.0
         return h * _controlled(clock, error, order)
-    factor = step_factor(error, order, clock[GROWTH])
-    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[GROWTH]) or clock[HELD] < hold):
-        clock[HELD] += 1.0
+    factor = step_factor(error, order, clock[LARGEST_GROWTH])
+    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[LARGEST_GROWTH]) or clock[EQUAL_STEPS] < hold):
+        clock[EQUAL_STEPS] += 1.0
         return h
-    clock[HELD] = 0.0
+    clock[EQUAL_STEPS] = 0.0
     return h * factor

@@ -20,10 +20,10 @@ from ..state.run_records import (
     CHUNK,
     CLOCK_SIZE,
     EAGER,
+    EQUAL_STEPS,
     EVENT,
     FIXED_STEP,
     FULL,
-    HELD,
     HOLD,
     LOG_COLUMNS,
     MAX_STEP,
@@ -263,14 +263,14 @@ def run(workspace: Any, method: Any, loop: Any, chunk: int) -> int:
                 h *= 0.25
             else:
                 h *= min(0.9, step_factor(error[0], error[1], 1.0))
-            clock[STEP_SIZE], clock[HELD] = h, 0.0
+            clock[STEP_SIZE], clock[EQUAL_STEPS] = h, 0.0
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
             continue
         if workspace.n_contacts > 0 and not fixed:
             leap = leap_of(workspace, method, loop, h)
             if leap > 1.0:
-                clock[STEP_SIZE], clock[HELD] = 0.9 * h / leap, 0.0
+                clock[STEP_SIZE], clock[EQUAL_STEPS] = 0.9 * h / leap, 0.0
                 counters[REJECTED] += 1
                 clock[REJECTED_HERE] += 1.0
                 continue
@@ -291,7 +291,7 @@ def run(workspace: Any, method: Any, loop: Any, chunk: int) -> int:
             choice = vec(method.choice, CHOICE_SIZE)
             if multistep and loop.select != 0:
                 hold = choice[K] + 1.0
-                if clock[HELD] >= hold and select_in_frames(workspace, method, loop.select, h):
+                if clock[EQUAL_STEPS] >= hold and select_in_frames(workspace, method, loop.select, h):
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
             proposed = next_step(loop, h, norm, order, multistep, hold)

@@ -14,7 +14,7 @@ from ..event_detection.broad_phase import keep_watch
 from ..event_detection.contact_evaluation import set_travel
 from ..event_detection.contact_sleeping import sleeps_on
 from ..event_detection.trial_steps import make_trial
-from ..events.impact_law_codes import FORCE
+from ..events.impact_law_codes import BY_FORCE
 from ..events.zeno import any_force_law, end_pushing, near_level
 from ..methods.history import history_time, recall
 from ..state.modes import ACTIVE, OPEN, UNWATCHED, memories_at
@@ -138,14 +138,14 @@ def _find_touching(drive: Any, workspace: Any, method: Any, loop: Any, h: float,
     )
     law, sleeping = ivec(drive.law, workspace.n_contacts), ivec(workspace.sleeping, workspace.n_contacts)
     for k in range(workspace.n_contacts):
-        if law[k] == FORCE:
+        if law[k] == BY_FORCE:
             continue
         pending[k] = 0
         sleeps = sleeping[k] != 0 if accepted else sleeps_on(workspace, method, loop, k)
         if not sleeps and phi[rows[k]] <= level * scale[rows[k]]:
             pending[k], touches, deepest = 1, True, max(deepest, -phi[rows[k]])
     for k in range(workspace.n_contacts):
-        if law[k] != FORCE and sleeping[k] == 0 and phi[rows[k]] <= NEAR * deepest:
+        if law[k] != BY_FORCE and sleeping[k] == 0 and phi[rows[k]] <= NEAR * deepest:
             pending[k] = 1
     return touches
 
@@ -157,7 +157,7 @@ def _end_at_forces(drive: Any, workspace: Any, method: Any, loop: Any, h: float)
     memory, law = memories_at(workspace.memory, workspace.n_contacts), ivec(drive.law, workspace.n_contacts)
     starter, rows, kept = loop.starter, loop.rows, loop.capacity
     for k in range(workspace.n_contacts):
-        if law[k] != FORCE:
+        if law[k] != BY_FORCE:
             memory[k].mode = UNWATCHED
     status = NONE
     if call_find_events(loop.find_events, workspace, method, loop, h, False):
@@ -166,6 +166,6 @@ def _end_at_forces(drive: Any, workspace: Any, method: Any, loop: Any, h: float)
         status = call_locate(drive.locate, drive, False)
         loop.starter, loop.rows, loop.capacity = starter, rows, kept
     for k in range(workspace.n_contacts):
-        if law[k] != FORCE:
+        if law[k] != BY_FORCE:
             memory[k].mode = OPEN
     return int(status)

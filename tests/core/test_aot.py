@@ -16,7 +16,7 @@ from tlismni.core.aot.make import MEMORY
 from tlismni.core.aot.module import QUICK, undefined
 from tlismni.core.aot.packed import put, take
 from tlismni.core.aot.targets import TARGETS
-from tlismni.core.compiled.library import LIBRARY, PLACE, packed, unpacked
+from tlismni.core.compiled.library import LIBRARY, LIBRARY_VARIABLE, packed, unpacked
 from tlismni.core.compiled.lock import ProcessLock
 from tlismni.core.compiled.signatures import signature_text, split_signature, split_types
 from tlismni.core.source_digests import c_digest, core_digest
@@ -31,7 +31,7 @@ def run(code: str, library: str | Path, *arguments: str, **environment: str) -> 
     """A new process of Python with this library."""
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
-        env={**os.environ, PLACE: str(library), **environment},
+        env={**os.environ, LIBRARY_VARIABLE: str(library), **environment},
         capture_output=True,
         text=True,
         check=False,
@@ -85,7 +85,7 @@ if __name__ == "__main__":
 
 def recorded_once(commands: list[list[str]]) -> list[list[str]]:
     """Run the command with each of these words on one recording: LLVM's names of the functions of each part."""
-    environment = {name: value for name, value in FRESH.items() if name != PLACE}
+    environment = {name: value for name, value in FRESH.items() if name != LIBRARY_VARIABLE}
     names: list[list[str]] = answer(run(RECORDED_ONCE, "none", json.dumps(commands), **environment))
     return names
 

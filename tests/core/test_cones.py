@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of, compiled
 from tlismni.core.contact_solvers.planar_contacts import (
+    BELOW_LIMITS,
     CONES_SIGNATURE,
     NONE,
+    PLANAR_VECTORS,
     SOLVED,
-    STICKS,
-    VECTORS,
     Cones,
     call_cones,
     solve_cones,
     work_size,
 )
 
-FOUND = VECTORS[-4:]
+FOUND = PLANAR_VECTORS[-4:]
 
 
 class Problem(NamedTuple):
@@ -182,14 +182,14 @@ def test_what_is_no_number_does_no_harm(n, what):
         problem[k].reshape(-1)[-1] = what
         cones = Cones(n)
         cones.set_array("work", np.full(work_size(n) + 50, 7.0))
-        assert solve(problem, cones)[0] in (NONE, SOLVED, STICKS)
+        assert solve(problem, cones)[0] in (NONE, SOLVED, BELOW_LIMITS)
         assert np.all(cones.arrays["work"][-50:] == 7.0)
 
 
 def test_what_sticks_says_so():
     one, none = np.eye(2), np.zeros(2)
     p = Problem(one, np.zeros((2, 2)), one, -np.ones(2), np.full(2, 0.1), np.full(2, 0.3), none, none)
-    assert solve(p)[0] == STICKS
+    assert solve(p)[0] == BELOW_LIMITS
     assert solve(p._replace(b_t=np.ones(2)))[0] == SOLVED
     assert solve(p._replace(direction=np.ones(2)))[0] == SOLVED
 

@@ -6,7 +6,12 @@ import numba
 import numpy as np
 import pytest
 from tlismni.core.compiled.jit import address_of
-from tlismni.core.contact_solvers.friction_cones import FOUND, MOST_SWEEPS, friction_cones_size, solve_friction_cones
+from tlismni.core.contact_solvers.friction_cones import (
+    CONES_SOLVED,
+    MOST_SWEEPS,
+    friction_cones_size,
+    solve_friction_cones,
+)
 from tlismni.core.contact_solvers.least_forces import least_forces_size, take_least_forces
 from tlismni.core.linalg.small import LEAST_NORM_SIGNATURE, least_norm
 
@@ -23,7 +28,7 @@ def solve(a, b, mu, base=None, known=None, way=None):
     known, way = np.zeros(n) if known is None else known, np.zeros((3, n)) if way is None else way
     address = address_of(least_norm, LEAST_NORM_SIGNATURE)
     status = _solve(address, n, a, b, np.asarray(mu, float), base, known, way, p, work.ctypes.data)
-    assert status == FOUND
+    assert status == CONES_SOLVED
     return p, b + a @ p
 
 
@@ -247,7 +252,7 @@ def test_forces_that_do_not_exist_are_not_found():
     args = np.array([-1.0, 0.0, 0.0]), np.array([0.5]), np.zeros(1), np.ones(1), np.array([[1.0], [0.0]])
     p, work = np.zeros(3), np.zeros(friction_cones_size(1))
     address = address_of(least_norm, LEAST_NORM_SIGNATURE)
-    assert _solve(address, 1, a, *args, p, work.ctypes.data) != FOUND
+    assert _solve(address, 1, a, *args, p, work.ctypes.data) != CONES_SOLVED
 
 
 @pytest.mark.sampled(10)

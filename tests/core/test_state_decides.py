@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tlismni.core import Simulation, SimulationError, State, TlismniError
-from tlismni.core.events.progress import COUNT, IN_A_ROW, SINCE
+from tlismni.core.events.progress import COUNTED_SINCE, EVENTS_COUNTED, IN_A_ROW
 from tlismni.core.simulation.setup import HISTORY_ROWS
 from tlismni.models import load
 
@@ -154,7 +154,7 @@ def test_a_restored_run_gives_up_where_the_first_one_does():
     sim.advance(0.3)
     plain = sim.state()
     next_impact = 0.4515236409857309
-    sim.guard.numbers[[SINCE, COUNT]] = next_impact, IN_A_ROW
+    sim.guard.numbers[[COUNTED_SINCE, EVENTS_COUNTED]] = next_impact, IN_A_ROW
     state = sim.state()
     assert state != plain
     other.restore(State.from_bytes(state.to_bytes()))

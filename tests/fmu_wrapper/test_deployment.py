@@ -18,7 +18,7 @@ import fmpy
 import pytest
 from fmu_helpers import ball_model
 from test_fmu_real import STEPS, Fmu, host, run_host  # noqa: F401
-from tlismni.core.compiled.library import LIBM, LIBRARY, PLACE, SUFFIX, USUAL_PLACE
+from tlismni.core.compiled.library import LIBM, LIBRARY, LIBRARY_VARIABLE, SUFFIX, USUAL_PLACE
 from tlismni.fmu_wrapper import export_fmu
 from tlismni.fmu_wrapper.bundle import package_archive
 from tlismni.fmu_wrapper.libpython import requirements
@@ -197,7 +197,7 @@ def library_of(folder, bundle=None, **files):
         content.extractall(folder / "carried")
     for name, data in files.items():
         (folder / "carried" / "core" / "compiled" / name).write_bytes(data)
-    environment = {k: v for k, v in os.environ.items() if k not in (PLACE, LIBM)}
+    environment = {k: v for k, v in os.environ.items() if k not in (LIBRARY_VARIABLE, LIBM)}
     command = [sys.executable, "-c", WHICH, str(folder)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=1200, env=environment)
     assert done.returncode == 0, done.stderr
