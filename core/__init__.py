@@ -144,17 +144,17 @@ if TYPE_CHECKING:
     from .elements.scalar_joint2d import scalar_constraint as scalar_constraint
     from .elements.servo2d import Servo2D as Servo2D
     from .elements.servo3d import Servo3D as Servo3D
-    from .elements.slide_spring2d import SlideSpring2D as SlideSpring2D
     from .elements.spatial_body import PointMass3D as PointMass3D
     from .elements.spatial_body import RigidBody3D as RigidBody3D
     from .elements.spherical_friction3d import SphericalFriction3D as SphericalFriction3D
+    from .elements.spring_damper2d import SlideSpring2D as SlideSpring2D
     from .elements.spring_damper2d import SpringDamper2D as SpringDamper2D
+    from .elements.spring_damper2d import TorsionSpring2D as TorsionSpring2D
     from .elements.spring_damper3d import AxialSpring3D as AxialSpring3D
     from .elements.spring_damper3d import SpringDamper3D as SpringDamper3D
     from .elements.spring_damper3d import TorsionSpring3D as TorsionSpring3D
     from .elements.table_spring2d import TableSpring2D as TableSpring2D
     from .elements.table_spring3d import TableSpring3D as TableSpring3D
-    from .elements.torsion_spring2d import TorsionSpring2D as TorsionSpring2D
     from .equations.errors import EquationError as EquationError
     from .equations.system import EquationSystem as EquationSystem
     from .equations.system import GapContact as GapContact

@@ -1,8 +1,7 @@
 """Kernels that are made from formulas, for the library of machine code: of each record that has a `form_key`."""
 
 from collections.abc import Iterator
-from itertools import product
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
@@ -12,7 +11,6 @@ from ..contacts.element import ContactElement
 from ..elements import FORCES, JOINTS
 from ..elements.base import Form
 from ..elements.formula2d import form_name
-from ..elements.measures2d import Measure
 from ..errors import ModelError
 from ..laws import KelvinVoigt, NewtonImpact
 from ..laws.friction import CoulombFriction, LuGreFriction
@@ -23,8 +21,6 @@ A, B = Marker2D(), Marker2D(body="b")
 CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
 CANDIDATES = (1.0, Constant(value=0.0), CORNERS)
 """Values for fields that must be given, on which the code does not depend: the first that fits is taken."""
-NEEDED = {"gain": 1.0, "torque": 1.0, "force": 1.0, "transition_rate": 1.0, "transition_speed": 1.0}
-"""Fields with a default with which an element does nothing."""
 RUBBED = CoulombFriction(coefficient=0.5)
 BRISTLED = LuGreFriction(coefficient=0.5, stribeck_speed=1.0, bristle_stiffness=1.0)
 LAWS: tuple[dict[str, Any], ...] = (
@@ -35,21 +31,18 @@ LAWS: tuple[dict[str, Any], ...] = (
 
 
 def _examples() -> Iterator[Any]:
-    """Of each record with a kernel from formulas one for each kernel: by measure, or by friction."""
+    """Of each record with a kernel from formulas one for each kernel: by friction."""
     for record in (*JOINTS.values(), *FORCES.values(), *CONTACTS.values()):
         if not hasattr(record, "form_key"):
             continue
-        measures = [name for name in ("measure", "sensed") if name in record.model_fields]
-        laws = LAWS if issubclass(record, ContactElement) else ({},)
-        for chosen, law in product(product(get_args(Measure), repeat=len(measures)), laws):
-            more = {**law, **dict(zip(measures, chosen, strict=True))}
+        for law in LAWS if issubclass(record, ContactElement) else ({},):
             if "friction" not in law or record.formula.slide is not None:
-                yield _example(record, A, **more)
+                yield _example(record, A, **law)
 
 
 def _example(record: type[BaseModel], marker: Marker2D, **more: Any) -> Any:
     """A record with values for all fields that it needs. Raises ModelError for one of which none of CANDIDATES fits."""
-    values = {"name": "example", "marker": marker, "a": marker, "b": B, **NEEDED, **more}
+    values = {"name": "example", "marker": marker, "a": marker, "b": B, **more}
     given = {name: value for name, value in values.items() if name in record.model_fields}
     for name, field in record.model_fields.items():
         if name in given or not field.is_required():
@@ -66,7 +59,7 @@ def _example(record: type[BaseModel], marker: Marker2D, **more: Any) -> Any:
                 continue
         else:
             raise ModelError(
-                f"nothing says what `{name}` of an example of {record.__name__} could be: add it to NEEDED"
+                f"nothing says what `{name}` of an example of {record.__name__} could be: add it to CANDIDATES"
             )
     return record(**given)
 

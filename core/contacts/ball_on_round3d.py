@@ -38,9 +38,6 @@ class _BallOnRound3D(Contact3D):
             )
         return self
 
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.sphere,)
-
     def extent(self) -> float:
         return self.sphere.radius
 

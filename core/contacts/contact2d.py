@@ -82,10 +82,6 @@ class Contact2D(ContactElement):
         more = (least, self.friction.parameters()[-1])
         return tuple(Row((*row.parameters, *more), (*row.coordinates, *own), row.extra) for row in rows)
 
-    def disks(self) -> Sequence[Disk2D]:
-        """The disks that it brings in touch, for the drawing."""
-        return ()
-
     def lengths(self) -> Sequence[float]:
         return tuple(disk.radius for disk in self.disks())
 
@@ -112,9 +108,6 @@ class DiskOnHalfPlane2D(Contact2D):
     """The half-plane."""
     disk: Disk2D
     """The disk."""
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
 
     def row(self, numbering: Numbering) -> Row:
         angle = self.plane.marker.angle + 0.5 * math.pi

@@ -138,8 +138,9 @@ class Contact3D(ContactElement):
             refuse_points(self.name, self.markers(), bodies, instead)
 
     def spheres(self) -> Sequence[Sphere3D]:
-        """The spheres that it brings in touch."""
-        raise NotImplementedError
+        """The spheres that it brings in touch: its field `sphere`, if it has one."""
+        sphere: Sphere3D | None = getattr(self, "sphere", None)
+        return () if sphere is None else (sphere,)
 
     def form(self) -> Form:
         """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
@@ -196,9 +197,6 @@ class SphereOnHalfSpace3D(Contact3D):
     """The half-space."""
     sphere: Sphere3D
     """The sphere."""
-
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.sphere,)
 
     def row(self, numbering: Numbering) -> Row:
         return self._row_of(numbering, self.plane.marker, self.sphere.marker, 0.0, self.sphere.radius)

@@ -1,7 +1,5 @@
 """Contacts of a disk whose gap is a formula of the disk's centre."""
 
-from collections.abc import Sequence
-
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .scalar_contact2d import ScalarContact2D
@@ -22,6 +20,3 @@ class DiskContact2D(ScalarContact2D):
     def radius(self) -> float:
         """Of the disk, m."""
         return self.disk.radius
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)

@@ -60,9 +60,6 @@ class DiskOnCable2D(Contact2D):
     def acts_on(self) -> frozenset[str]:
         return super().acts_on() | {self.cable}
 
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
-
     def extent(self) -> float:
         return self.disk.radius + self.thickness
 

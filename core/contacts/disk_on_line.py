@@ -111,9 +111,6 @@ class DiskOnLine2D(Contact2D):
             )
         return self
 
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
-
     def extent(self) -> float:
         return self.disk.radius + self.line.radius
 

@@ -20,7 +20,7 @@ from ..laws import ForceLaw
 from ..model.markers import Marker3D
 from ..model.signals import Signal
 from ..model.words import an
-from .contact3d import Contact3D, Sphere3D
+from .contact3d import Contact3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D
 from .edge_parts import Edged3D, edge_sorts, edges_of
 from .edges_nearest3d import EDGES
@@ -90,9 +90,6 @@ class EdgesOnEdges3D(Contact3D):
                     "sorts, numbered from 0: take contacts_between or a ContactGroup3D, which make a contact for each"
                 )
         return self
-
-    def spheres(self) -> Sequence[Sphere3D]:
-        return ()
 
     def lengths(self) -> Sequence[float]:
         return (self.a.rounding(), self.b.rounding(), _reach(self.a), _reach(self.b))

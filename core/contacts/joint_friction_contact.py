@@ -21,9 +21,10 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT, line_of
 from ..compiled.views import imat, ivec, mat, vec
 from ..elements.base import BodyElement, Form, Numbering, PairElement2D, Part, Row
-from ..elements.geometry2d import height_over_line
 from ..elements.joint_friction import JointFrictionForce
-from ..elements.measure3d import ANGLE, COLUMNS, PLACE, WHOLE_TURN, columns_of, coordinates_of, measure
+from ..elements.measure2d import pair2d, width2d
+from ..elements.measure3d import ANGLE, WHOLE_TURN, Pair, pack, pair3d
+from ..elements.measures import measure_of
 from ..laws import NewtonImpact
 from ..laws.friction import CoulombFriction
 from ..model.base import Name, NonNegative
@@ -38,7 +39,7 @@ CONSTANT_LOAD, REACTION_SHARE, MEASURE_KIND, SLIDE_UNIT, SLIDE_GAIN, MEASURED_PA
 unit of it, of k, and the first of the pair of markers."""
 OWN_ROWS = 2
 """Of gap and sliding distance; those of the joint's force stand behind."""
-PLANAR_COORDINATES, SPATIAL_COORDINATES = 6, 14
+SPATIAL_COORDINATES = 14
 
 
 @internal
@@ -61,86 +62,32 @@ def press(b: Any, job: int, e: int, own_rows: int, stop: int) -> None:
 
 
 @internal
-def _rub(b: Any, job: int, t: float, e: int, s: float, tangent: Any, hessian: Any, period: float) -> None:
-    """What friction along a measure s adds for `job`, tangent (n,) and hessian, packed: those of all coordinates."""
-    press(b, job, e, OWN_ROWS, 0)
-    par, w = mat(b.par, b.count, b.npar)[e], imat(b.coord, b.count, b.ncoord)[e, 0]
-    gap, size = vec(b.q, b.n_extended)[w] * par[SLIDE_GAIN], par[SLIDE_UNIT]
-    act_sliding(
-        b,
-        job,
-        t,
-        e,
-        gap,
-        np.full(1, par[SLIDE_GAIN]),
-        vec(b.q, 0),
-        size * s,
-        size * tangent,
-        size * hessian,
-        size * period,
-    )
-
-
-@internal
-def joint_friction2d_kernel(job: int, t: float, b: Any) -> None:
-    par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, PLANAR_COORDINATES + 1), vec(b.q, b.n_extended)
-    tangent, hessian = (
-        np.zeros(PLANAR_COORDINATES + 1),
-        np.zeros((PLANAR_COORDINATES + 1) * (PLANAR_COORDINATES + 2) // 2),
-    )
+def joint_friction_kernel(job: int, t: float, b: Any) -> None:
+    """Friction along a measure s, whose coordinates stand behind that of the stop."""
+    n, par, q = b.ncoord - 1, mat(b.par, b.count, b.npar), vec(b.q, b.n_extended)
+    gradient, square = np.empty(n), np.empty((n, n))
+    tangent, hessian = np.zeros(n + 1), np.zeros((n + 1) * (n + 2) // 2)
     for e in range(b.count):
-        p, own = par[e], coord[e, 1:]
-        if int(p[MEASURE_KIND]) == ANGLE:
-            s = q[own[5]] - q[own[2]]
-            tangent[:] = 0.0
-            hessian[:] = 0.0
-            tangent[3], tangent[6] = -1.0, 1.0
-        else:
-            s, gradient, bent = height_over_line(
-                q,
-                own,
-                p[MEASURED_PAIR],
-                p[MEASURED_PAIR + 1],
-                p[MEASURED_PAIR + 2],
-                p[MEASURED_PAIR + 3],
-                p[MEASURED_PAIR + 4],
-            )
-            for i in range(PLANAR_COORDINATES):
-                tangent[1 + i] = gradient[i]
-            for k in range(len(bent)):
-                hessian[PLANAR_COORDINATES + 1 + k] = bent[k]
-        _rub(b, job, t, e, s, tangent, hessian, 0.0)
-
-
-@internal
-def joint_friction3d_kernel(job: int, t: float, b: Any) -> None:
-    par, q = mat(b.par, b.count, b.npar), vec(b.q, b.n_extended)
-    gradient, square = np.empty(SPATIAL_COORDINATES), np.empty((SPATIAL_COORDINATES, SPATIAL_COORDINATES))
-    tangent, hessian = (
-        np.zeros(SPATIAL_COORDINATES + 1),
-        np.zeros((SPATIAL_COORDINATES + 1) * (SPATIAL_COORDINATES + 2) // 2),
-    )
-    for e in range(b.count):
-        kind = int(par[e, MEASURE_KIND])
-        own = ivec(b.coord + 8 * (e * b.ncoord + 1), SPATIAL_COORDINATES)
-        s = measure(kind, q, own, vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), COLUMNS), 0.0, gradient, square)
-        k = SPATIAL_COORDINATES + 1
-        for i in range(SPATIAL_COORDINATES):
+        kind, size, gain = int(par[e, MEASURE_KIND]), par[e, SLIDE_UNIT], par[e, SLIDE_GAIN]
+        own, pair = (
+            ivec(b.coord + 8 * (e * b.ncoord + 1), n),
+            vec(b.par + 8 * (e * b.npar + MEASURED_PAIR), b.npar - MEASURED_PAIR),
+        )
+        s = measure_of(kind, q, own, pair, 0.0, gradient, square, True)
+        for i in range(n):
             tangent[1 + i] = gradient[i]
-            for j in range(i, SPATIAL_COORDINATES):
-                hessian[k] = square[i, j]
-                k += 1
-        _rub(b, job, t, e, s, tangent, hessian, WHOLE_TURN if kind == ANGLE else 0.0)
+        pack(square, hessian[n + 1 :])
+        press(b, job, e, OWN_ROWS, 0)
+        gap = q[imat(b.coord, b.count, b.ncoord)[e, 0]] * gain
+        # planar bodies count turns
+        period = size * WHOLE_TURN if kind == ANGLE else 0.0
+        act_sliding(b, job, t, e, gap, np.full(1, gain), vec(b.q, 0), size * s, size * tangent, size * hessian, period)
 
 
 class JointFriction(ContactElement):
-    """Base of the friction of joints as contacts.
+    """Base of the friction of joints as contacts. Class attribute: `kernel`."""
 
-    Class attributes: `kernel`; `width`, the number of coordinates of the pair of markers.
-    """
-
-    kernel: ClassVar[Any]
-    width: ClassVar[int]
+    kernel: ClassVar[Any] = joint_friction_kernel
     has_shapes: ClassVar[bool] = False
 
     law: NewtonImpact = NewtonImpact(restitution=0.0)
@@ -156,7 +103,7 @@ class JointFriction(ContactElement):
 
     def form_with(self, felt: int) -> Form:
         """Kernel and patterns, with so many rows of the joint."""
-        n = type(self).width + 1
+        n = self.width() + 1
         full = tuple((i, j) for i in range(1, n) for j in range(1, n))
         felt_rows = ((OWN_ROWS + k, 0) for k in range(felt))
         return Form(type(self).kernel, OWN_ROWS, full, ((0, 0), *((1, j) for j in range(1, n)), *felt_rows))
@@ -189,14 +136,18 @@ class JointFriction(ContactElement):
 
     def row(self, numbering: Numbering) -> Row:
         law, size = self._law_columns(numbering), self.size_in(numbering.length)
-        kind = float(ANGLE if self.measured == "angle" else PLACE)
-        columns, coordinates = self.pair(numbering)
-        parameters = (*(0.0,) * 7, *law.parameters, *self._numbers(size), kind, size, self._gain(numbering), *columns)
-        return Row(parameters, (*numbering.internal(self.name), *coordinates), law.extra)
+        pair, numbers = self.pair(numbering), self._numbers(size)
+        own = (float(pair.kind), size, self._gain(numbering), *pair.columns)
+        parameters = (*(0.0,) * 7, *law.parameters, *numbers, *own)
+        return Row(parameters, (*numbering.internal(self.name), *pair.coordinates), law.extra)
 
-    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
-        """Parameters and coordinates of its markers."""
+    def pair(self, numbering: Numbering) -> Pair:
+        """Its measure in the tables."""
         raise NotImplementedError(f"{type(self).__name__} must say what its markers are")
+
+    def width(self) -> int:
+        """Number of coordinates of the measure."""
+        raise NotImplementedError(f"{type(self).__name__} must say how many coordinates its measure has")
 
     def _numbers(self, size: float) -> tuple[float, float]:
         """CONSTANT_LOAD and REACTION_SHARE."""
@@ -207,8 +158,6 @@ class JointFriction2D(JointFriction):
     """Friction of a joint between the bodies of planar markers."""
 
     type: Literal["JointFriction2D"] = "JointFriction2D"
-    kernel: ClassVar[Any] = joint_friction2d_kernel
-    width: ClassVar[int] = PLANAR_COORDINATES
 
     a: Marker2D
     """The first marker."""
@@ -218,15 +167,15 @@ class JointFriction2D(JointFriction):
     def markers(self) -> Sequence[Marker2D]:
         return (self.a, self.b)
 
-    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
-        columns = (*self.a.point, *self.b.point, self.a.angle)
-        return columns, (*numbering.frame(self.a), *numbering.frame(self.b))
+    def pair(self, numbering: Numbering) -> Pair:
+        return pair2d(self.measured, self.a, self.b, numbering)
+
+    def width(self) -> int:
+        return width2d(self.measured)
 
 
 class SpatialJointFriction(JointFriction):
     """Base of friction of a joint between the bodies of markers in space."""
-
-    width: ClassVar[int] = SPATIAL_COORDINATES
 
     a: Marker3D
     """The first marker."""
@@ -236,15 +185,17 @@ class SpatialJointFriction(JointFriction):
     def markers(self) -> Sequence[Marker3D]:
         return (self.a, self.b)
 
-    def pair(self, numbering: Numbering) -> tuple[Sequence[float], Sequence[int]]:
-        return columns_of(self.a, self.b, numbering), coordinates_of(self.a, self.b, numbering)
+    def pair(self, numbering: Numbering) -> Pair:
+        return pair3d(self.measured, self.a, self.b, numbering)
+
+    def width(self) -> int:
+        return SPATIAL_COORDINATES
 
 
 class JointFriction3D(SpatialJointFriction):
     """Friction of a joint about or along the z axis of marker `a`."""
 
     type: Literal["JointFriction3D"] = "JointFriction3D"
-    kernel: ClassVar[Any] = joint_friction3d_kernel
 
 
 def contact_of(friction: JointFrictionForce) -> JointFriction:
@@ -257,4 +208,4 @@ def contact_of(friction: JointFrictionForce) -> JointFriction:
     )  # fmt: skip
 
 
-are(JOINT, joint_friction2d_kernel, joint_friction3d_kernel)
+are(JOINT, joint_friction_kernel)

@@ -122,9 +122,6 @@ class SphereOnCable3D(CableContact3D):
                 "touch for ever; give the sphere another body"
             )
 
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.sphere,)
-
     def extent(self) -> float:
         return self.sphere.radius + self.thickness
 
@@ -154,9 +151,6 @@ class CableOnHalfSpace3D(CableContact3D):
     """The half-space."""
     place: Annotated[float, Field(ge=0.0, le=1.0)]
     """Where the point is along the undeformed cable, in parts of its length, dimensionless: from 0 to 1."""
-
-    def spheres(self) -> Sequence[Sphere3D]:
-        return ()
 
     def markers(self) -> Sequence[Marker3D]:
         return (self.plane.marker,)

@@ -72,9 +72,6 @@ class SphereOnMesh3D(Contact3D):
             )
         return self
 
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.sphere,)
-
     def lengths(self) -> Sequence[float]:
         return (self.sphere.radius, self._reach())
 

@@ -34,9 +34,6 @@ class SmoothOnHalfSpace3D(Contact3D):
     shape: Smooth3D
     """An ellipsoid, a torus (a disk without rim radius), or an own shape."""
 
-    def spheres(self) -> Sequence[Sphere3D]:
-        return ()
-
     def lengths(self) -> Sequence[float]:
         return (self.shape.extent(),)
 
@@ -77,9 +74,6 @@ class SphereInSphere3D(Contact3D):
                 f"{self.hollow.radius:g} m: make the hollow one larger"
             )
         return self
-
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.sphere,)
 
     def lengths(self) -> Sequence[float]:
         return (self.hollow.radius, self.sphere.radius)

@@ -163,9 +163,6 @@ class DiskOnSegment2D(Contact2D):
         refuse_point_on_line(self.name, "segment", self.disk.radius, self.segment.radius)
         return self
 
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.disk,)
-
     def extent(self) -> float:
         return self.disk.radius + self.segment.radius
 

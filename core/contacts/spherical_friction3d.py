@@ -201,7 +201,7 @@ class SphericalJointFriction3D(SpatialJointFriction):
 
     def row(self, numbering: Numbering) -> Row:
         law, size = self._law_columns(numbering), self.size_in(numbering.length)
-        columns, coordinates = self.pair(numbering)
+        _, columns, coordinates = self.pair(numbering)
         which = (type(self).which, size, self._gain(numbering))
         parameters = (*(0.0,) * 7, *law.parameters, *self._numbers(size), *which, *columns)
         return Row(parameters, (*coordinates, *numbering.internal(self.name)), law.extra)

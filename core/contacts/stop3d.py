@@ -12,7 +12,7 @@ from pydantic import model_validator
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, mat, vec
-from ..elements.base import BodyElement, Form, Numbering, Part, Row
+from ..elements.base import BodyElement, Form, Numbering, Part, Row, no_account
 from ..elements.measure3d import ANGLE, DISTANCE, PLACE, columns_of, coordinates_of, measure
 from ..elements.spatial_body import start_of_marker
 from ..elements.start_angle3d import check_start_angle
@@ -98,7 +98,7 @@ class Stop3D(ContactElement):
 
     def parts(self, numbering: Numbering) -> Sequence[Part]:
         law = self._law_columns(numbering)
-        account, start, counted = numbering.frame(Marker3D())[0], 0.0, []
+        account, start, counted = no_account(numbering), 0.0, []
         if self.measured == ANGLE:
             account, start = (
                 numbering.work(account_of(self.name), LOOSE),

@@ -16,9 +16,9 @@ from typing import Any
 from ..compiled.jit import inlined, internal
 from ..elements.measure3d import AXES_A, AXES_B, POINT_A, POINT_B, offset
 from ..model.rotation3d import (
+    add_bend,
     add_lever,
     along,
-    bend,
     constant,
     cross,
     dot,
@@ -132,17 +132,6 @@ def tangent_motion(
     return n, u, beta_a, beta_b, size
 
 
-@inlined
-def _add_bend(values: Any, slot: Any, first: int, factor: float, f: Any, u: Any) -> None:
-    bent, k = bend(f, u), 0
-    for i in range(4):
-        for j in range(i, 4):
-            values[slot[first + i, first + j]] += factor * bent[k]
-            if i != j:
-                values[slot[first + j, first + i]] += factor * bent[k]
-            k += 1
-
-
 @internal
 def _add_moves(
     kind: int, values: Any, slot: Any, q: Any, coord: Any, pair: Any, moves: Any, force: Any, factor: float
@@ -184,8 +173,8 @@ def add_directions(
         for i in range(4):
             values[slot[3 + i, j]] -= 2.0 * factor * on_a[i]
             values[slot[10 + i, j]] += 2.0 * factor * on_b[i]
-    _add_bend(values, slot, 3, -factor * size, force, constant(pair, POINT_A))
-    _add_bend(values, slot, 10, factor * size, force, constant(pair, POINT_B))
+    add_bend(values, slot, 3, -factor * size, force, constant(pair, POINT_A))
+    add_bend(values, slot, 10, factor * size, force, constant(pair, POINT_B))
     add_lever(values, slot, 3, -2.0 * factor, cross(beta_a, force))
     add_lever(values, slot, 10, 2.0 * factor, cross(beta_b, force))
 

@@ -10,7 +10,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.markers import GROUND, Marker3D
-from ..model.rotation3d import add_bend, constant, dot, four, onto, plus, times, turned, turning
+from ..model.rotation3d import add_bend, add_torque_bend, constant, dot, four, onto, plus, times, turned, turning
 from ..model.signals import INPUT_SIZE, Constant, Signal, evaluate_signal
 from .base import BodyElement, ForceElement, Numbering, Row
 from .spatial_body import PointMass3D
@@ -72,20 +72,7 @@ def applied_load3d_kernel(job: int, t: float, b: Any) -> None:
                         values[slot[i, 3 + j]] -= c_q * directions[j][i]
                     for i in range(4):
                         values[slot[3 + i, 3 + j]] -= c_q * dot(arms[i], directions[j])
-            # d(G^T n)/dp = [[0, -n^T], [n, -n~]], of E the last block with the other sign
-            x, y, z = times(-2.0 * c_q, torque)
-            values[slot[3, 4]] -= x
-            values[slot[3, 5]] -= y
-            values[slot[3, 6]] -= z
-            values[slot[4, 3]] += x
-            values[slot[5, 3]] += y
-            values[slot[6, 3]] += z
-            values[slot[4, 5]] += sign * z
-            values[slot[4, 6]] -= sign * y
-            values[slot[5, 4]] -= sign * z
-            values[slot[5, 6]] += sign * x
-            values[slot[6, 4]] += sign * y
-            values[slot[6, 5]] -= sign * x
+            add_torque_bend(values, slot, times(-2.0 * c_q, torque), sign)
             continue
         v, r = vec(b.v, b.n_extended), vec(b.r, b.n_extended)
         power = 0.0

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol
 
@@ -112,6 +113,11 @@ class Numbering(Protocol):
         ...
 
 
+def no_account(numbering: Numbering) -> int:
+    """Index of a place that stays zero, in place of an account that is not needed."""
+    return numbering.frame(Marker3D())[0]
+
+
 @dataclass(frozen=True)
 class Row:
     """One element in the tables of its kernel."""
@@ -137,6 +143,12 @@ class Form:
     """Local rows that hold at velocity level only, W(q) v = w(t), without a position form (nonholonomic). Their kernel
     writes 0 to phi, W v - w to phid and its time derivative to phidd; W stands in the rows of Phi_q, W^T lambda in r,
     and the tangent of r has d(W^T lambda)/dq."""
+
+
+@cache
+def full_pattern(n: int) -> Sequence[tuple[int, int]]:
+    """All pairs of n local coordinates."""
+    return tuple((i, j) for i in range(n) for j in range(n))
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,9 @@ from ..model.attitude import Vector4
 from ..model.attitude import product as seen
 from ..model.rotation3d import four
 from ..rounding import SYMMETRY
-from .base import BodyElement, Numbering, Row
-from .measure3d import columns_of, coordinates_of, place_of, product
-from .measured_force3d import FULL, Pair3D
+from .base import BodyElement, Numbering, Row, full_pattern
+from .geometry2d import along
+from .measure3d import Pair3D, columns_of, coordinates_of, place_of
 from .turning_bodies import refuse_points
 
 Vector6 = tuple[float, float, float, float, float, float]
@@ -137,7 +137,7 @@ def bushing3d_kernel(job: int, t: float, b: Any) -> None:
             else:
                 z[k] = _tilt(k - 3, par[e, SIGN], seen, by, mixed, gradient[k], hessian[k])
                 _spin_rows(k - 3, seen, by, mixed, rows[k], changes[k])
-            rate[k] = product(rows[k], v, coord[e])
+            rate[k] = along(rows[k], v, coord[e])
         energy, lost = 0.0, 0.0
         for k in range(6):
             pull[k], drag[k] = 0.0, 0.0
@@ -184,7 +184,7 @@ class Bushing3D(Pair3D):
 
     type: Literal["Bushing3D"] = "Bushing3D"
     kernel: ClassVar[Any] = bushing3d_kernel
-    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = full_pattern(14)
 
     stiffness: Vector6 | Matrix6
     """Six numbers (three in N/m, three in N m/rad), or a matrix of six rows."""

@@ -2,28 +2,24 @@
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
 
 from ..errors import ModelError
-from ..model.base import NonNegative, Positive, Vector2
-from ..rounding import BEYOND_END, ON_NODE
-from .base import MOST_ELEMENTS, Numbering, Row
+from ..model.base import NonNegative, Vector2
+from .base import Numbering, Row
+from .cable_body import SLOPE_SCALE, CableBody
 from .cable_kernel import MOST_POINTS, NODAL, cable2d_kernel
 from .cable_shape import POINTS, gauss_places, weights
 from .coordinate import Coordinate
 from .flexible_body import FlexibleBody, PointShape, Section, along_axis
 
-SLOPE_SCALE = 0.5
-"""Less than the 1 of angles, so that of a point's frame and a slope it is the frame that counts as dependent: its rows
-are linear in it."""
 FULL_PATTERN = tuple((i, j) for i in range(NODAL) for j in range(NODAL))
 
 
-class Cable2D(FlexibleBody):
+class Cable2D(CableBody, FlexibleBody):
     """A cable or beam (shear-rigid, large deformation) of `elements` equal ANCF elements in a row.
 
     Node k = 0 ... elements has the absolute coordinates x{k}, y{k} and the slope dr/ds, slope_x{k} and slope_y{k}, s
@@ -40,18 +36,6 @@ class Cable2D(FlexibleBody):
     kernel: ClassVar[Any] = cable2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 
-    elements: Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
-    """Number of elements."""
-    length: Positive
-    """Undeformed length of the whole cable, m."""
-    mass_per_length: Positive
-    """kg/m."""
-    axial_stiffness: Positive
-    """EA, N."""
-    bending_stiffness: NonNegative
-    """EI, N m^2; 0 is a thread."""
-    axial_damping: NonNegative = 0.0
-    """Axial force per rate of the axial strain, N s."""
     bending_damping: NonNegative = 0.0
     """Bending moment per rate of the curvature, N m^2 s."""
     reference_strain: float = 0.0
@@ -73,19 +57,6 @@ class Cable2D(FlexibleBody):
     """Initial velocity of the place `position`, m/s."""
     angular_velocity: float = 0.0
     """It starts turning about `position` as if rigid, rad/s."""
-
-    @model_validator(mode="after")
-    def _check(self) -> "Cable2D":
-        if self.shape is None:
-            return self
-        if len(self.shape) != self.elements + 1:
-            raise ValueError(f"shape of '{self.name}' has {len(self.shape)} nodes: {self.elements} elements have "
-                             f"{self.elements + 1}")  # fmt: skip
-        for k, (_, _, sx, sy) in enumerate(self.shape):
-            if sx == 0.0 and sy == 0.0:
-                raise ValueError(f"shape of '{self.name}': node {k} has slope zero, so that it has no direction; an "
-                                 "unstretched cable has slopes of length 1")  # fmt: skip
-        return self
 
     def coordinate_records(self) -> Sequence[Coordinate]:
         records = []
@@ -123,12 +94,6 @@ class Cable2D(FlexibleBody):
         places = self.start_shape()[:, :2]
         return [(float(x), float(y)) for x, y in (places.min(axis=0), places.max(axis=0))]
 
-    def lengths(self) -> Sequence[float]:
-        return (self.length,)
-
-    def row(self, numbering: Numbering) -> Row:
-        return self.rows(numbering)[0]
-
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row an element."""
         own = numbering.coordinates(self.name)
@@ -162,16 +127,6 @@ class Cable2D(FlexibleBody):
         square = np.sum(a * a, axis=2)
         return np.sqrt(square) - 1.0, (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / square
 
-    def find(self, s: float) -> tuple[int, float]:
-        """(element, place in [0, 1]) of the point at s m along the undeformed cable. Raises ModelError beyond it."""
-        if not -BEYOND_END * self.length <= s <= (1.0 + BEYOND_END) * self.length:
-            raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
-        place = min(max(s / self.length, 0.0), 1.0) * self.elements
-        # a node counts as one, in spite of rounding
-        place = round(place) if abs(place - round(place)) < ON_NODE * self.elements else place
-        e = min(int(place), self.elements - 1)
-        return e, place - e
-
     def material_point(self, point: tuple[float, float]) -> PointShape:
         """The point (s, 0), s m along the undeformed cable. Raises ModelError beyond it, and off its axis."""
         s, off = point
@@ -187,9 +142,6 @@ class Cable2D(FlexibleBody):
     def drawn_points(self) -> Sequence[tuple[float, float]]:
         # its nodes; a cubic between two of them may be bent
         return along_axis(self.length, self.elements) if self.elements > 1 else along_axis(self.length)
-
-    def typical_mass(self) -> float:
-        return self.mass_per_length * self.length
 
     def section(self, points: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> Section:
         """Strains and forces at `points`; of two elements that meet there the one behind counts."""

@@ -2,18 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
 
-from ..errors import ModelError
 from ..model.attitude import UPRIGHT, Attitude, rotation_matrix
-from ..model.base import NonNegative, Positive, Vector3
-from ..rounding import BEYOND_END, ON_NODE
-from .base import MOST_ELEMENTS, BodyElement, Numbering, Row
-from .cable2d import SLOPE_SCALE
+from ..model.base import Vector3
+from .base import Numbering, Row
+from .cable_body import SLOPE_SCALE, CableBody
 from .cable_kernel3d import NODAL_IN_SPACE, cable3d_kernel
 from .cable_shape import POINTS, weights
 from .coordinate import Coordinate
@@ -33,7 +30,7 @@ class CablePoint:
     """(4,)."""
 
 
-class Cable3D(BodyElement):
+class Cable3D(CableBody):
     """A cable or thin beam in space (shear-rigid, large deformation) of `elements` equal ANCF elements in a row.
 
     It resists stretching and bending, the same in all directions, but not torsion. Node k = 0 ... elements has the
@@ -52,18 +49,6 @@ class Cable3D(BodyElement):
         (i, j) for i in range(NODAL_IN_SPACE) for j in range(NODAL_IN_SPACE)
     )
 
-    elements: Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
-    """Number of elements."""
-    length: Positive
-    """Undeformed length of the whole cable, m."""
-    mass_per_length: Positive
-    """kg/m."""
-    axial_stiffness: Positive
-    """EA, N."""
-    bending_stiffness: NonNegative
-    """EI, N m^2; 0 is a thread."""
-    axial_damping: NonNegative = 0.0
-    """Axial force per rate of the axial strain, N s."""
     reference_strain: float = 0.0
     """Axial strain without force, dimensionless."""
     integration: Literal["full", "reduced"] = "full"
@@ -79,19 +64,6 @@ class Cable3D(BodyElement):
     """Initial velocity of the place `position`, m/s."""
     angular_velocity: Vector3 = (0.0, 0.0, 0.0)
     """It starts turning about `position` as if rigid, rad/s, in the axes of space."""
-
-    @model_validator(mode="after")
-    def _check(self) -> "Cable3D":
-        if self.shape is None:
-            return self
-        if len(self.shape) != self.elements + 1:
-            raise ValueError(f"shape of '{self.name}' has {len(self.shape)} nodes: {self.elements} elements have "
-                             f"{self.elements + 1}")  # fmt: skip
-        for k, node in enumerate(self.shape):
-            if not any(node[3:]):
-                raise ValueError(f"shape of '{self.name}': node {k} has slope zero, so that it has no direction; an "
-                                 "unstretched cable has slopes of length 1")  # fmt: skip
-        return self
 
     def coordinate_records(self) -> Sequence[Coordinate]:
         records = []
@@ -127,15 +99,6 @@ class Cable3D(BodyElement):
         places = self.start_shape()[:, 0]
         return [tuple(x.tolist()) for x in (places.min(axis=0), places.max(axis=0))]
 
-    def lengths(self) -> Sequence[float]:
-        return (self.length,)
-
-    def typical_mass(self) -> float:
-        return self.mass_per_length * self.length
-
-    def row(self, numbering: Numbering) -> Row:
-        return self.rows(numbering)[0]
-
     def rows(self, numbering: Numbering) -> Sequence[Row]:
         """One row an element."""
         own = numbering.coordinates(self.name)
@@ -145,16 +108,6 @@ class Cable3D(BodyElement):
         )  # fmt: skip
         extra = (numbering.work("dampers"),)
         return [Row(parameters, own[6 * e : 6 * e + NODAL_IN_SPACE], extra) for e in range(self.elements)]
-
-    def find(self, s: float) -> tuple[int, float]:
-        """(element, place in [0, 1]) of the point at s m along the undeformed cable. Raises ModelError beyond it."""
-        if not -BEYOND_END * self.length <= s <= (1.0 + BEYOND_END) * self.length:
-            raise ModelError(f"'{self.name}' has no point at s = {s:g} m: it reaches from 0 to {self.length:g} m")
-        place = min(max(s / self.length, 0.0), 1.0) * self.elements
-        # a node counts as one, in spite of rounding
-        place = round(place) if abs(place - round(place)) < ON_NODE * self.elements else place
-        e = min(int(place), self.elements - 1)
-        return e, place - e
 
     def point(self, s: float) -> CablePoint:
         """The point s m along the undeformed cable. Raises ModelError beyond it."""

@@ -13,24 +13,16 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from ..errors import ModelError
-from .base import Numbering, PairElement2D
-from .formula2d import Frame2D
-from .geometry2d import place
-from .scalar_joint2d import ScalarConstraint, ScalarJoint2D, scalar_constraint
+from .base import Numbering
+from .measure2d import ends2d
+from .rolling_pair2d import RollingPair2D, arcs
+from .scalar_joint2d import ScalarConstraint, scalar_constraint
 
 APART = 0.01
 """How much, relative to the larger radius, the distance of the centres may differ from the sum of the radii."""
 
 
-def lag(a: Frame2D, b: Frame2D, radius_a: float, radius_b: float, phase: float) -> float:
-    direction = math.atan2(b.y - a.y, b.x - a.x)
-    arc = radius_a * (a.angle - direction) + radius_b * (b.angle - direction) - phase
-    period = 2.0 * math.pi * (radius_a + radius_b)
-    turns = math.floor(arc / period + 0.5)
-    return arc - period * turns
-
-
-class Gear2D(ScalarJoint2D, PairElement2D):
+class Gear2D(RollingPair2D):
     """The pitch circles about markers `a` and `b`, the wheels' centres, roll on each other without slip.
 
     omega_a radius_a = -omega_b radius_b, seen from what holds the centres (a revolute joint each, on the ground or on
@@ -39,17 +31,20 @@ class Gear2D(ScalarJoint2D, PairElement2D):
     """
 
     type: Literal["Gear2D"] = "Gear2D"
-    formula: ClassVar[ScalarConstraint] = scalar_constraint(lag)
+    formula: ClassVar[ScalarConstraint] = scalar_constraint(arcs)
     multiplier: ClassVar[tuple[str, str, str]] = (
         "tooth_force", "N", "force between the teeth; positive: its torque on a wheel of positive radius is negative",
     )  # fmt: skip
-
-    derived: ClassVar[tuple[str, ...]] = ("phase",)
 
     radius_a: float
     """Radius of the pitch circle about `a`, m; negative for inner teeth."""
     radius_b: float
     """Radius of the pitch circle about `b`, m; negative for inner teeth."""
+
+    @property
+    def turning_b(self) -> float:
+        """Radius of a pulley b on a belt that would turn it the same way, m."""
+        return -self.radius_b
 
     @model_validator(mode="after")
     def _check_radii(self) -> "Gear2D":
@@ -59,8 +54,6 @@ class Gear2D(ScalarJoint2D, PairElement2D):
                 f"gear '{self.name}': radius_a = {a:g} and radius_b = {b:g} m are no gear pair: give two radii that "
                 "are not zero; for a wheel with inner teeth a negative one, larger than the other"
             )
-        if self.a.body == self.b.body:
-            raise ValueError(f"gear '{self.name}': both wheels are on '{self.a.body}': give it two bodies")
         return self
 
     def lengths(self) -> Sequence[float]:
@@ -73,14 +66,11 @@ class Gear2D(ScalarJoint2D, PairElement2D):
         ------
         ModelError : if the centres are not as far apart as the radii say.
         """
-        starts = [numbering.initial(marker.body) for marker in (self.a, self.b)]
-        a, b = (place(marker.point, start) for marker, start in zip((self.a, self.b), starts, strict=True))
+        a, b = ends2d(self.a, self.b, numbering)
         needed, found = abs(self.radius_a + self.radius_b), math.dist(a, b)
         if abs(found - needed) > APART * max(abs(self.radius_a), abs(self.radius_b)):
             raise ModelError(
                 f"the centres of gear '{self.name}' start {found:.6g} m apart, and its radii {self.radius_a:g} and "
                 f"{self.radius_b:g} m need {needed:.6g} m: move a marker, or change a radius"
             )
-        direction = math.atan2(b[1] - a[1], b[0] - a[0])
-        turned = [s[2] + marker.angle - direction for marker, s in zip((self.a, self.b), starts, strict=True)]
-        return {"phase": self.radius_a * turned[0] + self.radius_b * turned[1]}
+        return super().numbers(numbering)

@@ -5,22 +5,33 @@ both bodies, point of a, axes of a (three directions), point of b, axes of b; `c
 """
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from ..compiled.jit import inlined, internal
 from ..model.markers import Marker3D
 from ..model.rotation3d import bend, constant, dot, four, less, onto, plus, three, times, turned, turning
-from .base import Numbering
+from .base import ForceElement, Numbering
 
+Measure = Literal["angle", "slide", "distance"]
+"""What a force or a motor may act along."""
 COLUMNS = 26
 """Parameters of a pair of markers."""
 POINT_A, AXES_A, POINT_B, AXES_B = 2, 5, 14, 17
 DISTANCE, PLACE, ANGLE = range(3)
 """Kinds of measures: distance of the points, place of b along the z axis of a, angle of b about the z axis of a."""
+KINDS: Mapping[Measure, int] = {"angle": ANGLE, "slide": PLACE, "distance": DISTANCE}
 WHOLE_TURN = 2.0 * math.pi
+
+
+class Pair(NamedTuple):
+    """A measure of two markers in the tables: its kind, the parameters of the markers and the coordinates."""
+
+    kind: int
+    columns: Sequence[float]
+    coordinates: Sequence[int]
 
 
 def columns_of(a: Marker3D, b: Marker3D, numbering: Numbering) -> tuple[float, ...]:
@@ -32,6 +43,23 @@ def columns_of(a: Marker3D, b: Marker3D, numbering: Numbering) -> tuple[float, .
 def coordinates_of(a: Marker3D, b: Marker3D, numbering: Numbering) -> Sequence[int]:
     """Indices of the fourteen coordinates."""
     return (*numbering.frame(a), *numbering.frame(b))
+
+
+def pair3d(measure: Measure, a: Marker3D, b: Marker3D, numbering: Numbering) -> Pair:
+    """A measure of two markers in space in the tables."""
+    return Pair(KINDS[measure], columns_of(a, b, numbering), coordinates_of(a, b, numbering))
+
+
+class Pair3D(ForceElement):
+    """Base of what acts between two markers in space."""
+
+    a: Marker3D
+    """The first marker."""
+    b: Marker3D
+    """The second marker."""
+
+    def markers(self) -> Sequence[Marker3D]:
+        return (self.a, self.b)
 
 
 @inlined
@@ -52,6 +80,16 @@ def offset(q: Any, coord: Any, par: Any, p: Any, s: Any) -> Any:
     of_u, of_w = turning(p, constant(par, POINT_A)), turning(s, constant(par, POINT_B))
     d = less(three(q, coord, 7), three(q, coord, 0))
     return plus(d, less(turned(of_w, s), turned(of_u, p))), of_u, of_w
+
+
+@internal
+def pack(square: Any, packed: Any) -> None:
+    """The upper triangle of a symmetric matrix (n, n), row by row, to packed."""
+    k = 0
+    for i in range(len(square)):
+        for j in range(i, len(square)):
+            packed[k] = square[i, j]
+            k += 1
 
 
 @internal
@@ -149,27 +187,3 @@ def measure(kind: int, q: Any, coord: Any, par: Any, about: float, gradient: Any
     if kind == PLACE:
         return place_of(q, coord, par, 2, gradient, hessian)
     return angle_of(q, coord, par, about, gradient, hessian)
-
-
-@inlined
-def product(gradient: Any, x: Any, coord: Any) -> float:
-    """gradient . x at the local coordinates."""
-    total = 0.0
-    for i in range(14):
-        total += gradient[i] * x[coord[i]]
-    return total
-
-
-@internal
-def add_force_tangent(
-    values: Any, slot: Any, gradient: Any, hessian: Any, v: Any, coord: Any, force: float, by_value: float,
-    by_rate: float,
-) -> None:  # fmt: skip
-    """Tangent of a force along a measure: values += force H + gradient (by_value gradient + by_rate H v)^T."""
-    for j in range(14):
-        change = 0.0
-        for i in range(14):
-            change += hessian[i, j] * v[coord[i]]
-        right = by_value * gradient[j] + by_rate * change
-        for i in range(14):
-            values[slot[i, j]] += force * hessian[i, j] + gradient[i] * right

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 from ..model.markers import Marker3D
 from ..model.signals import Constant, Signal
-from .base import Form, Numbering, Part, Row
+from .base import Form, Numbering, Part, Row, no_account
 
 RA, PA, RB, PB = 0, 3, 7, 10
 """Where the places and the Euler parameters of both bodies begin among the local coordinates."""
@@ -26,7 +26,7 @@ def block(i: int, rows: int, j: int, columns: int) -> list[tuple[int, int]]:
 
 def account(numbering: Numbering, signal: Signal) -> int:
     """Index of the work account of what moves by `signal`; of a constant the place at rest, since it does none."""
-    return numbering.frame(Marker3D())[0] if isinstance(signal, Constant) else numbering.work("input")
+    return no_account(numbering) if isinstance(signal, Constant) else numbering.work("input")
 
 
 class Primitive:

@@ -11,43 +11,24 @@ from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
-from .base import JointElement, Numbering, PairElement2D, Row
+from .base import Numbering, Row
 from .geometry2d import FULL_PATTERN, constrain, height_over_line
+from .revolute2d import AngleHeld2D, hold_angle
 
 
 @internal
 def prismatic2d_kernel(job: int, t: float, b: Any) -> None:
     if job != RESIDUAL and job != TANGENT:
         return
-    par = mat(b.par, b.count, 6)
-    coord = imat(b.coord, b.count, 6)
-    row = imat(b.row, b.count, 2)
+    par, coord, row = mat(b.par, b.count, 6), imat(b.coord, b.count, 6), imat(b.row, b.count, 2)
     q = vec(b.q, b.n_extended)
-    v = vec(b.v, b.n_extended)
-    a = vec(b.a, b.n_extended)
-    lam = vec(b.lam, b.m_extended)
-    r = vec(b.r, b.n_extended)
-    values = vec(b.values, b.n_values)
-    slot_j = imat(b.slot_j, b.count, 12)
-    slot_jt = imat(b.slot_jt, b.count, 12)
     for e in range(b.count):
         g, gradient, hessian = height_over_line(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3], par[e, 4])
         constrain(b, job, e, row[e, 0], 0, g, gradient, hessian)
-        ta, tb, k = coord[e, 2], coord[e, 5], row[e, 1]
-        if job == RESIDUAL:
-            vec(b.phi, b.m_extended)[k] = q[tb] - q[ta] - par[e, 5]
-            vec(b.phid, b.m_extended)[k] = v[tb] - v[ta]
-            vec(b.phidd, b.m_extended)[k] = a[tb] - a[ta]
-            r[tb] += lam[k]
-            r[ta] -= lam[k]
-        else:
-            values[slot_j[e, 8]] -= 1.0
-            values[slot_jt[e, 8]] -= 1.0
-            values[slot_j[e, 11]] += 1.0
-            values[slot_jt[e, 11]] += 1.0
+    hold_angle(job, b, 1, 1.0)
 
 
-class Prismatic2D(PairElement2D, JointElement):
+class Prismatic2D(AngleHeld2D):
     """Marker `b` slides along the first axis of marker `a` and keeps the relative angle of the bodies.
 
     Its channels are the normal force and the torque on body a's side of the constraint (multipliers with the
@@ -67,13 +48,8 @@ class Prismatic2D(PairElement2D, JointElement):
         return (0,)
 
     def row(self, numbering: Numbering) -> Row:
-        relative = self.relative_angle
-        if relative is None:
-            relative = numbering.initial(self.b.body)[2] - numbering.initial(self.a.body)[2]
-        return Row(
-            (*self.a.point, *self.b.point, self.a.angle + 0.5 * math.pi, relative),
-            self.coordinates(numbering),
-        )
+        columns = (*self.a.point, *self.b.point, self.a.angle + 0.5 * math.pi, self.held_angle(numbering))
+        return Row(columns, self.coordinates(numbering))
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (

@@ -24,6 +24,7 @@ from ..compiled.jit import inlined, internal
 from ..compiled.kernels import ENERGY, POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.rotation3d import (
+    add_torque_bend,
     body_axes,
     body_rate,
     constant,
@@ -228,20 +229,7 @@ def reduced_body3d_kernel(job: int, t: float, b: Any) -> None:
                     values[slot[FRAME + i, 3 + j]] += total + 2.0 * dot(of_u, _row(swirl, i, 0))
                 values[slot_j[3 + j]] += 2.0 * p[j]
                 values[slot_jt[3 + j]] += 2.0 * p[j]
-            # d(2 G^T tau)/dp = 2 [[0, -tau^T], [tau, -tau~]]
-            x, y, z = times(2.0 * c_q, tau)
-            values[slot[3, 4]] -= x
-            values[slot[3, 5]] -= y
-            values[slot[3, 6]] -= z
-            values[slot[4, 3]] += x
-            values[slot[5, 3]] += y
-            values[slot[6, 3]] += z
-            values[slot[4, 5]] += z
-            values[slot[4, 6]] -= y
-            values[slot[5, 4]] -= z
-            values[slot[5, 6]] += x
-            values[slot[6, 4]] += y
-            values[slot[6, 5]] -= x
+            add_torque_bend(values, slot, times(2.0 * c_q, tau), 1.0)
             for j in range(n):
                 of_h = _row(mode, j, 0)
                 sheared = plus(_by(d, j, 0, u), _back(d, j, u))

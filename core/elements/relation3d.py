@@ -19,10 +19,11 @@ from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.markers import Marker3D
 from ..model.said_angle import CountedAngle
-from .base import BodyElement, Form, JointElement, Numbering, Part, Row
+from .base import BodyElement, Form, JointElement, Numbering, Part, Row, no_account
+from .geometry2d import along
 from .joint3d import channels_of, ends_of
 from .joint_coordinates3d import JointCoordinate
-from .measure3d import ANGLE, PLACE, columns_of, coordinates_of, measure, product
+from .measure3d import ANGLE, PLACE, columns_of, coordinates_of, measure
 from .spatial_body import angle_between, start_of_marker
 from .turn3d import LOOSE, account_of, turn_part
 from .turning_bodies import refuse_points
@@ -49,8 +50,8 @@ def relation3d_kernel(job: int, t: float, b: Any) -> None:
             if job == RESIDUAL:
                 r = vec(b.r, b.n_extended)
                 phi += factor * x
-                phid += factor * product(gradient, v, where)
-                phidd += factor * product(gradient, a, where)
+                phid += factor * along(gradient, v, where)
+                phidd += factor * along(gradient, a, where)
                 for i in range(14):
                     r[where[i]] += factor * lam * gradient[i]
                     for j in range(14):
@@ -107,7 +108,7 @@ class Relation3D(JointElement):
         turning: list[Part] = []
         phase = 0.0
         for k, (factor, kind, (a, b)) in enumerate(self.terms(), 1):
-            account, start = numbering.frame(Marker3D())[0], _start(kind, a, b, numbering)
+            account, start = no_account(numbering), _start(kind, a, b, numbering)
             if kind == ANGLE:
                 name = f"{self.name}.{k}"
                 account = numbering.work(account_of(name), LOOSE)

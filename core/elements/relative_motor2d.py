@@ -3,54 +3,51 @@
 Phi = x(a, b) - f(t).
 """
 
-from collections.abc import Sequence
-from functools import cache
-from typing import Any, ClassVar, Literal
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
+import numpy as np
 from pydantic import model_validator
 
+from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from ..model.motion import evaluate_motion
 from ..model.signals import INPUT_SIZE, Signal, Step
-from .base import Form, JointElement, Numbering, Row
-from .formula2d import Arguments, caller_of
+from .base import Form, JointElement, Numbering, Row, full_pattern
 from .geometry2d import constrain
-from .measured2d import MeasuredElement2D
-from .measures2d import EFFORTS, MEASURES
+from .measure2d import MeasuredElement2D, measure2d, pair2d, width2d
+from .measure3d import Measure, pack
 
-KIND = "relative_motor2d"
+EFFORTS: Mapping[Measure, tuple[str, str]] = {
+    "angle": ("torque", "N.m"), "slide": ("force", "N"), "distance": ("force", "N"),
+}  # fmt: skip
+"""Name and unit of what works against the growth of each."""
 
 
-@cache
-def _kernel(measure: str, arguments: Arguments) -> Any:
-    from ..compiled.formula_code import formula_internal
-    from ..compiled.jet_functions import gradient_of, hessian_of, value_of
-
-    formula = MEASURES[measure]
-    call, n = caller_of(formula, arguments, 0), arguments.size
-
-    def relative_motor2d_kernel(job: int, t: float, b: Any) -> None:
-        if job != RESIDUAL and job != TANGENT and job != POWER:
-            return
-        par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n), imat(b.row, b.count, 1)
-        extra, q = imat(b.extra, b.count, 2), vec(b.q, b.n_extended)
-        pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
-        for e in range(b.count):
-            k = row[e, 0]
-            f, df, ddf = evaluate_motion(pool, inputs, extra[e, 0], t)
-            if job == POWER:
-                vec(b.a, b.n_extended)[extra[e, 1]] -= vec(b.lam, b.m_extended)[k] * df
-                continue
-            g = call(q, coord[e], par[e])
-            constrain(b, job, e, k, 0, value_of(g), gradient_of(g), hessian_of(g))
-            if job == RESIDUAL:
-                vec(b.phi, b.m_extended)[k] -= f
-                vec(b.phid, b.m_extended)[k] -= df
-                vec(b.phidd, b.m_extended)[k] -= ddf
-
-    return formula_internal(relative_motor2d_kernel, (formula, evaluate_motion), arguments)
+@internal
+def relative_motor2d_kernel(job: int, t: float, b: Any) -> None:
+    if job != RESIDUAL and job != TANGENT and job != POWER:
+        return
+    n = b.ncoord
+    par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, n), imat(b.row, b.count, 1)
+    extra, q = imat(b.extra, b.count, 2), vec(b.q, b.n_extended)
+    pool, inputs = vec(b.signals, b.n_signals), vec(b.inputs, INPUT_SIZE * b.n_inputs)
+    gradient, hessian, packed = np.empty(n), np.empty((n, n)), np.empty(n * (n + 1) // 2)
+    for e in range(b.count):
+        k = row[e, 0]
+        f, df, ddf = evaluate_motion(pool, inputs, extra[e, 0], t)
+        if job == POWER:
+            vec(b.a, b.n_extended)[extra[e, 1]] -= vec(b.lam, b.m_extended)[k] * df
+            continue
+        x = measure2d(int(par[e, 0]), q, coord[e], par[e, 1:], gradient, hessian, True)
+        pack(hessian, packed)
+        constrain(b, job, e, k, 0, x, gradient, packed)
+        if job == RESIDUAL:
+            vec(b.phi, b.m_extended)[k] -= f
+            vec(b.phid, b.m_extended)[k] -= df
+            vec(b.phidd, b.m_extended)[k] -= ddf
 
 
 class RelativeMotor2D(JointElement, MeasuredElement2D):
@@ -62,7 +59,6 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
     """
 
     type: Literal["RelativeMotor2D"] = "RelativeMotor2D"
-    form_kind: ClassVar[str] = KIND
 
     motion: Signal
     """What it follows, rad or m over s. The bodies must start where it says; an input leads them there."""
@@ -79,12 +75,13 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
         return self
 
     def form(self) -> Form:
-        return self.form_of(_kernel, rows=1)
+        n = width2d(self.measure)
+        return Form(relative_motor2d_kernel, 1, full_pattern(n), tuple((0, j) for j in range(n)))
 
     def row(self, numbering: Numbering) -> Row:
-        arguments = self.arguments()
+        pair = pair2d(self.measure, self.a, self.b, numbering)
         extra = (numbering.motion(self.motion), numbering.work("input"))
-        return Row(arguments.columns(self), arguments.coordinates(self, numbering), extra)
+        return Row((float(pair.kind), *pair.columns), pair.coordinates, extra)
 
     def motions(self) -> Sequence[Signal]:
         return (self.motion,)

@@ -3,54 +3,38 @@
 Phi = p_a - p_b, p = (x, y) + R(theta) u.  With rho = R u and J = [[0, -1], [1, 0]]: p' = J rho, p'' = -rho.
 """
 
-import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.channels import Channel
 from .base import JointElement, Numbering, PairElement2D, Row
+from .geometry2d import arms
 
 
 @internal
-def revolute2d_kernel(job: int, t: float, b: Any) -> None:
-    if job != RESIDUAL and job != TANGENT:
-        return
-    par = mat(b.par, b.count, 4)
-    coord = imat(b.coord, b.count, 6)
-    row = imat(b.row, b.count, 2)
-    q = vec(b.q, b.n_extended)
-    v = vec(b.v, b.n_extended)
-    a = vec(b.a, b.n_extended)
-    lam = vec(b.lam, b.m_extended)
-    r = vec(b.r, b.n_extended)
-    phi = vec(b.phi, b.m_extended)
-    phid = vec(b.phid, b.m_extended)
-    phidd = vec(b.phidd, b.m_extended)
-    values = vec(b.values, b.n_values)
-    coef = vec(b.coef, 2)
-    slot_s = imat(b.slot_s, b.count, 36)
-    slot_j = imat(b.slot_j, b.count, 12)
-    slot_jt = imat(b.slot_jt, b.count, 12)
+def hold_points(job: int, b: Any) -> None:
+    """The first two rows of each element: points of both bodies, the first four parameters, are one."""
+    par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), imat(b.row, b.count, b.nrow)
+    q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
+    lam, r, values = vec(b.lam, b.m_extended), vec(b.r, b.n_extended), vec(b.values, b.n_values)
+    phi, phid, phidd = vec(b.phi, b.m_extended), vec(b.phid, b.m_extended), vec(b.phidd, b.m_extended)
+    c_q, slot_s = vec(b.coef, 2)[0], imat(b.slot_s, b.count, 36)
+    slot_j, slot_jt = imat(b.slot_j, b.count, 6 * b.nrow), imat(b.slot_jt, b.count, 6 * b.nrow)
     for e in range(b.count):
-        ta, tb = coord[e, 2], coord[e, 5]
-        c, s = math.cos(q[ta]), math.sin(q[ta])
-        ax, ay = c * par[e, 0] - s * par[e, 1], s * par[e, 0] + c * par[e, 1]
-        c, s = math.cos(q[tb]), math.sin(q[tb])
-        bx, by = c * par[e, 2] - s * par[e, 3], s * par[e, 2] + c * par[e, 3]
+        xa, ya, ta, xb, yb, tb = coord[e, 0], coord[e, 1], coord[e, 2], coord[e, 3], coord[e, 4], coord[e, 5]
         k0, k1 = row[e, 0], row[e, 1]
+        ax, ay, bx, by = arms(q, coord[e], par[e, 0], par[e, 1], par[e, 2], par[e, 3])
+        lx, ly = lam[k0], lam[k1]
         if job == RESIDUAL:
-            xa, ya, xb, yb = coord[e, 0], coord[e, 1], coord[e, 3], coord[e, 4]
             wa, wb = v[ta], v[tb]
-            phi[k0] = q[xa] + ax - q[xb] - bx
-            phi[k1] = q[ya] + ay - q[yb] - by
+            phi[k0], phi[k1] = q[xa] + ax - q[xb] - bx, q[ya] + ay - q[yb] - by
             phid[k0] = v[xa] - wa * ay - v[xb] + wb * by
             phid[k1] = v[ya] + wa * ax - v[yb] - wb * bx
             phidd[k0] = a[xa] - a[ta] * ay - wa * wa * ax - a[xb] + a[tb] * by + wb * wb * bx
             phidd[k1] = a[ya] + a[ta] * ax - wa * wa * ay - a[yb] - a[tb] * bx + wb * wb * by
-            lx, ly = lam[k0], lam[k1]
             r[xa] += lx
             r[ya] += ly
             r[ta] += ax * ly - ay * lx
@@ -59,8 +43,8 @@ def revolute2d_kernel(job: int, t: float, b: Any) -> None:
             r[tb] -= bx * ly - by * lx
         else:
             # (Phi_q^T lam)_q: only the curvature of the two points
-            values[slot_s[e, 14]] -= coef[0] * (ax * lam[k0] + ay * lam[k1])
-            values[slot_s[e, 35]] += coef[0] * (bx * lam[k0] + by * lam[k1])
+            values[slot_s[e, 14]] -= c_q * (ax * lx + ay * ly)
+            values[slot_s[e, 35]] += c_q * (bx * lx + by * ly)
             for transposed in range(2):
                 slot = slot_jt if transposed else slot_j
                 values[slot[e, 0]] += 1.0
@@ -71,6 +55,35 @@ def revolute2d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[e, 8]] += ax
                 values[slot[e, 10]] -= 1.0
                 values[slot[e, 11]] -= bx
+
+
+@internal
+def hold_angle(job: int, b: Any, local: int, sign: float) -> None:
+    """Row `local` of each element: theta_b - theta_a is what its last parameter says. The row is `sign` times that."""
+    par, coord, row = mat(b.par, b.count, b.npar), imat(b.coord, b.count, 6), imat(b.row, b.count, b.nrow)
+    q, v, a = vec(b.q, b.n_extended), vec(b.v, b.n_extended), vec(b.a, b.n_extended)
+    r, values = vec(b.r, b.n_extended), vec(b.values, b.n_values)
+    slot_j, slot_jt = imat(b.slot_j, b.count, 6 * b.nrow), imat(b.slot_jt, b.count, 6 * b.nrow)
+    for e in range(b.count):
+        ta, tb, k = coord[e, 2], coord[e, 5], row[e, local]
+        if job == RESIDUAL:
+            vec(b.phi, b.m_extended)[k] = sign * (q[tb] - q[ta] - par[e, b.npar - 1])
+            vec(b.phid, b.m_extended)[k] = sign * (v[tb] - v[ta])
+            vec(b.phidd, b.m_extended)[k] = sign * (a[tb] - a[ta])
+            torque = sign * vec(b.lam, b.m_extended)[k]
+            r[tb] += torque
+            r[ta] -= torque
+        else:
+            for transposed in range(2):
+                slot = slot_jt if transposed else slot_j
+                values[slot[e, 6 * local + 2]] -= sign
+                values[slot[e, 6 * local + 5]] += sign
+
+
+@internal
+def revolute2d_kernel(job: int, t: float, b: Any) -> None:
+    if job == RESIDUAL or job == TANGENT:
+        hold_points(job, b)
 
 
 class Revolute2D(PairElement2D, JointElement):
@@ -88,13 +101,23 @@ class Revolute2D(PairElement2D, JointElement):
         return (0, 1)
 
     def row(self, numbering: Numbering) -> Row:
-        return Row(
-            (*self.a.point, *self.b.point),
-            self.coordinates(numbering),
-        )
+        return Row((*self.a.point, *self.b.point), self.coordinates(numbering))
 
     def multiplier_channels(self) -> Sequence[Channel]:
         return (
             Channel(f"{self.name}.force_x", "N", "force of the joint on its body b, x"),
             Channel(f"{self.name}.force_y", "N", "force of the joint on its body b, y"),
         )
+
+
+class AngleHeld2D(PairElement2D, JointElement):
+    """Base of planar joints that keep the relative angle of the bodies."""
+
+    if TYPE_CHECKING:
+        relative_angle: float | None
+
+    def held_angle(self, numbering: Numbering) -> float:
+        """theta_b - theta_a, rad: as it says, or as in the start configuration."""
+        if self.relative_angle is not None:
+            return self.relative_angle
+        return numbering.initial(self.b.body)[2] - numbering.initial(self.a.body)[2]

@@ -9,21 +9,10 @@ from ..compiled.views import imat, mat, vec
 from ..errors import ModelError
 from ..model.markers import Marker2D
 from .base import ForceElement, Form, Numbering, Row
-from .formula2d import (
-    MARKER_COLUMNS,
-    Arguments,
-    FormKey,
-    argument_names,
-    caller_of,
-    derivatives,
-    form_ahead,
-    plain_function,
-)
+from .formula2d import MARKER_COLUMNS, Arguments, argument_names, caller_of, derivatives, plain_function
 from .geometry2d import add_hessian, add_product, along
 
 Function = Callable[..., Any]
-KIND = "scalar_force2d"
-"""Of its kernels in the library of machine code."""
 
 
 class ScalarForce:
@@ -37,11 +26,6 @@ class ScalarForce:
                 raise ModelError(f"{function.__qualname__} takes {argument_names(function)}, {what} is needed")
 
     @property
-    def formulas(self) -> tuple[Function, ...]:
-        """Measure, force and energy."""
-        return self.measure, self.force, self.energy or _nothing
-
-    @property
     def names(self) -> tuple[str, ...]:
         """Names of the arguments that are fields."""
         more = argument_names(self.force)[2:]
@@ -49,9 +33,6 @@ class ScalarForce:
 
     def form(self, arguments: Arguments) -> Form:
         """Kernel and patterns."""
-        ahead = form_ahead(KIND, self.formulas, arguments)
-        if ahead is not None:
-            return ahead
         found = derivatives(self.measure, arguments)
         bent = {k for pair in found.second for k in pair}
         pattern = {(i, j) for i in found.first for j in {*found.first, *bent}}
@@ -145,10 +126,6 @@ class ScalarForce2D(ForceElement):
     def arguments(self) -> Arguments:
         """What its formulas take."""
         return Arguments.of(self, self.formula.names)
-
-    def form_key(self) -> FormKey:
-        """Kind and formulas of its kernel, by which the library of machine code has it."""
-        return KIND, self.formula.formulas
 
     def form(self) -> Form:
         return self.formula.form(self.arguments())

@@ -1,11 +1,8 @@
-"""Servo between two bodies in space: a spring and damper whose end a time function or an input moves; see `servo2d`."""
+"""Servo between two bodies in space; see `servo_law`."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
-from ..model.base import NonNegative, Positive
-from ..model.signals import Signal
-from .base import Numbering
-from .measured_force3d import MEASURE_KINDS, SERVO, CountingForce3D, Measure3D
+from .measured_force3d import CountingForce3D, Measure
 from .servo_law import ServoLaw
 
 
@@ -17,23 +14,6 @@ class Servo3D(ServoLaw, CountingForce3D):
     """
 
     type: Literal["Servo3D"] = "Servo3D"
-    law: ClassVar[int] = SERVO
 
-    measure: Measure3D = "angle"
+    measure: Measure = "angle"
     """What it moves."""
-    target: Signal
-    """rad or m over s; with `of_rate` rad/s or m/s."""
-    gain: NonNegative = 0.0
-    """N m/rad or N/m."""
-    rate_gain: NonNegative = 0.0
-    """N m s/rad or N s/m."""
-    of_rate: bool = False
-    """Whether `target` is a rate, not a position."""
-    largest: Positive | None = None
-    """Largest force or torque that it gives, N or N m; left out: it gives any."""
-
-    def kind(self) -> int:
-        return MEASURE_KINDS[self.measure]
-
-    def signal_in(self, numbering: Numbering) -> int:
-        return numbering.signal(self.target)

@@ -1,23 +1,41 @@
-"""What servos of the plane and of space have in common."""
+"""Servo between two bodies: a spring and damper whose end a time function or an input moves.
+
+F = gain (x - f(t)) + rate_gain (x' - f'(t)) works against the growth of x: a position servo. Without gain and with the
+rate as target (`of_rate`), F = rate_gain (x' - f(t)): a velocity servo. All of its power counts as put in.
+
+A servo that saturates gives F (1 + (F/L)^8)^(-1/8) instead, L its largest force: F itself while that is below L/2 (to
+5e-4), and no more than L. It is smooth, so that nothing has to be located.
+"""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 from pydantic import model_validator
 
+from ..model.base import NonNegative, Positive
 from ..model.signals import Signal
-from .base import ForceElement
+from .measured_force import SERVO, Measure, MeasuredForce, Numbers
 
 
-class ServoLaw(ForceElement):
-    """Base of the servos. Each declares the fields itself: their order is that of its JSON."""
+class ServoLaw(MeasuredForce):
+    """Base of the servos."""
 
-    if TYPE_CHECKING:
-        target: Signal
-        gain: float
-        rate_gain: float
-        of_rate: bool
-        largest: float | None
+    law: ClassVar[int] = SERVO
+    noun: ClassVar[str] = "servo"
+    dissipates: ClassVar[bool] = False
+
+    type: str
+    measure: Measure = "angle"
+    target: Signal
+    """rad or m over s; with `of_rate` rad/s or m/s."""
+    gain: NonNegative = 0.0
+    """N m/rad or N/m."""
+    rate_gain: NonNegative = 0.0
+    """N m s/rad or N s/m."""
+    of_rate: bool = False
+    """Whether `target` is a rate, not a position."""
+    largest: Positive | None = None
+    """Largest force or torque that it gives, N or N m; left out: it gives any."""
 
     @model_validator(mode="after")
     def _check(self) -> "ServoLaw":
@@ -29,8 +47,7 @@ class ServoLaw(ForceElement):
             raise ValueError(f"servo '{self.name}' has neither gain nor rate_gain, so it does nothing: give one")
         return self
 
-    def numbers(self) -> tuple[float, float, float, float]:
-        """Of its law, for the kernels."""
+    def numbers(self) -> Numbers:
         return (self.gain, self.rate_gain, float(self.of_rate), self.largest or 0.0)
 
     def signals(self) -> Sequence[Signal]:

@@ -21,7 +21,18 @@ from ..model.attitude import UPRIGHT, Attitude, EulerParameters, product, rotati
 from ..model.base import Positive, Vector3
 from ..model.derived import Derived
 from ..model.markers import GROUND, Marker, Marker3D
-from ..model.rotation3d import body_axes, body_rate, cross, dot, four, of_body_torque, plus, three, times
+from ..model.rotation3d import (
+    add_torque_bend,
+    body_axes,
+    body_rate,
+    cross,
+    dot,
+    four,
+    of_body_torque,
+    plus,
+    three,
+    times,
+)
 from ..rounding import TRIANGLE
 from .base import BodyElement, Numbering, Row
 from .coordinate import Coordinate, X, Y, Z
@@ -113,20 +124,7 @@ def rigid_body3d_kernel(job: int, t: float, b: Any) -> None:
                 values[slot[3 + j, 3 + j]] += 2.0 * coef[0] * lam
                 values[slot_j[3 + j]] += 2.0 * p[j]
                 values[slot_jt[3 + j]] += 2.0 * p[j]
-            # d(G^T y)/dp = [[0, -y^T], [y, -y~]]
-            y0, y1, y2 = times(coef[0], y)
-            values[slot[3, 4]] -= y0
-            values[slot[3, 5]] -= y1
-            values[slot[3, 6]] -= y2
-            values[slot[4, 3]] += y0
-            values[slot[5, 3]] += y1
-            values[slot[6, 3]] += y2
-            values[slot[4, 5]] += y2
-            values[slot[4, 6]] -= y1
-            values[slot[5, 4]] -= y2
-            values[slot[5, 6]] += y0
-            values[slot[6, 4]] += y1
-            values[slot[6, 5]] -= y0
+            add_torque_bend(values, slot, times(coef[0], y), 1.0)
 
 
 class SpatialFrame(BodyElement):

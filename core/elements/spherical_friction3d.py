@@ -11,10 +11,9 @@ from ..compiled.jit import internal
 from ..compiled.kernels import POWER, RESIDUAL, TANGENT
 from ..compiled.views import imat, mat, vec
 from ..model.rotation3d import dot, four, plus, space_axes, times
-from .base import BodyElement, Numbering, Row
+from .base import BodyElement, Numbering, Row, full_pattern
 from .joint_friction import TurningFriction
-from .measure3d import columns_of, coordinates_of
-from .measured_force3d import FULL, Pair3D
+from .measure3d import Pair3D, columns_of, coordinates_of
 from .relative_spin3d import add_torque, add_torque_change, add_torque_tangent, relative_spin, spin_by_coordinate
 from .turning_bodies import refuse_points
 
@@ -59,7 +58,7 @@ class SphericalFriction3D(TurningFriction, Pair3D):
 
     type: Literal["SphericalFriction3D"] = "SphericalFriction3D"
     kernel: ClassVar[Any] = regularised_spherical3d_kernel
-    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL
+    tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = full_pattern(14)
     is_spherical: ClassVar[bool] = True
 
     def check_in(self, bodies: Mapping[str, BodyElement]) -> None:

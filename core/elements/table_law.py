@@ -1,20 +1,26 @@
-"""What springs with a table, of the plane and of space, have in common."""
+"""Spring whose force along a measure is a table: F = f(x) + c x', f a cubic spline."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import model_validator
 
 from ..model.signals import Table
-from .base import ForceElement
+from .base import Numbering
+from .measured_force import TABLE, MeasuredForce, Numbers
 
 
-class TableLaw(ForceElement):
+class TableLaw(MeasuredForce):
     """Base of springs whose force over what they measure is a table. Each declares the fields itself: their order is
     that of its JSON."""
+
+    law: ClassVar[int] = TABLE
+    noun: ClassVar[str] = "spring"
 
     if TYPE_CHECKING:
         lengths_table: tuple[float, ...]
         forces: tuple[float, ...]
+        damping: float
 
     @model_validator(mode="after")
     def _check(self) -> "TableLaw":
@@ -31,7 +37,11 @@ class TableLaw(ForceElement):
         """The force over what is measured."""
         return Table(times=self.lengths_table, values=self.forces)
 
-    @property
-    def farthest(self) -> float:
-        """The larger size of what the table begins and ends with."""
-        return max(abs(self.lengths_table[0]), abs(self.lengths_table[-1]))
+    def lengths(self) -> Sequence[float]:
+        return () if self.acts_along == "angle" else (max(abs(self.lengths_table[0]), abs(self.lengths_table[-1])),)
+
+    def numbers(self) -> Numbers:
+        return (0.0, self.damping, 0.0, 0.0)
+
+    def signal_in(self, numbering: Numbering) -> int:
+        return numbering.signal(self.table)

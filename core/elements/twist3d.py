@@ -16,10 +16,10 @@ from ..compiled.views import imat, mat, vec
 from ..model.frame3d import FRAME, in_space, vector_of
 from ..model.markers import Marker3D
 from ..model.motion import evaluate_motion
-from ..model.rotation3d import add_bend, columns_at, constant, cross, dot, onto, turns
+from ..model.rotation3d import constant, cross, dot, turns
 from ..model.signals import INPUT_SIZE, Constant, Signal
 from .base import Form, Numbering
-from .dot1_3d import BY_ROTATION, ROTATIONS
+from .dot1_3d import BY_ROTATION, ROTATIONS, add_product_force, add_product_tangent
 from .primitive3d import AXIS, Axis, Primitive, account
 
 
@@ -55,28 +55,9 @@ def twist3d_kernel(job: int, t: float, b: Any) -> None:
                 phidd += g * z_second + 2.0 * g_rate * z_rate + g_second * z
                 power += lam * g_rate * z
                 if job == RESIDUAL:
-                    r, by_a, by_b = vec(b.r, b.n_extended), onto(of_a, y), onto(of_b, x)
-                    for i in range(4):
-                        r[coord[e, 3 + i]] += lam * g * by_a[i]
-                        r[coord[e, 10 + i]] += lam * g * by_b[i]
+                    add_product_force(b, coord[e], of_a, of_b, x, y, lam * g)
             else:
-                values, slot = vec(b.values, b.n_values), imat(b.slot_s + 8 * 196 * e, 14, 14)
-                slot_j, slot_jt = imat(b.slot_j, b.count, 14)[e], imat(b.slot_jt, b.count, 14)[e]
-                of_a, x = columns_at(b, coord[e], 3, par[e, 0], u)
-                of_b, y = columns_at(b, coord[e], 10, par[e, 1], w)
-                factor = vec(b.coef, 2)[0] * lam * g
-                add_bend(values, slot, 3, factor, y, u)
-                add_bend(values, slot, 10, factor, x, w)
-                by_a, by_b = onto(of_a, y), onto(of_b, x)
-                for i in range(4):
-                    for j in range(4):
-                        mixed = factor * dot(of_a[i], of_b[j])
-                        values[slot[3 + i, 10 + j]] += mixed
-                        values[slot[10 + j, 3 + i]] += mixed
-                    values[slot_j[3 + i]] += g * by_a[i]
-                    values[slot_jt[3 + i]] += g * by_a[i]
-                    values[slot_j[10 + i]] += g * by_b[i]
-                    values[slot_jt[10 + i]] += g * by_b[i]
+                add_product_tangent(b, e, par[e], u, w, lam, g)
         if job == RESIDUAL:
             vec(b.phi, b.m_extended)[k] = phi
             vec(b.phid, b.m_extended)[k] = phid

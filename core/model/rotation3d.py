@@ -149,6 +149,25 @@ def add_bend(values: Any, slot: Any, first: int, factor: float, f: Any, u: Any) 
             k += 1
 
 
+@internal
+def add_torque_bend(values: Any, slot: Any, y: Any, sign: float) -> None:
+    """values[slot] += d(G^T y)/dp, or with sign -1 d(E^T y)/dp: [[0, -y^T], [y, -+y~]], in the rows and columns 3 to 6
+    of the Euler parameters."""
+    a, b, c = y
+    values[slot[3, 4]] -= a
+    values[slot[3, 5]] -= b
+    values[slot[3, 6]] -= c
+    values[slot[4, 3]] += a
+    values[slot[5, 3]] += b
+    values[slot[6, 3]] += c
+    values[slot[4, 5]] += sign * c
+    values[slot[4, 6]] -= sign * b
+    values[slot[5, 4]] -= sign * c
+    values[slot[5, 6]] += sign * a
+    values[slot[6, 4]] += sign * b
+    values[slot[6, 5]] -= sign * a
+
+
 @inlined
 def body_rate(p: Any, rate: Any) -> Any:
     """G(p) p', half the angular velocity in the body; and G(p) b for any b."""

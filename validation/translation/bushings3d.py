@@ -11,7 +11,7 @@ from operator import add, mul
 import numpy as np
 
 from ...core.elements import Bushing3D
-from ...core.elements.measured_force3d import Pair3D
+from ...core.elements.measure3d import Pair3D
 from ...core.model.markers import Marker3D
 from .registry import Build, translates
 from .space_contacts import End, Vector, check_bodies, cross, dot, plus, vector

@@ -17,7 +17,7 @@ def spring_damper(record: SpringDamper2D, build: Build) -> None:
     build.add(
         "ObjectConnectorSpringDamper",
         markerNumbers=[build.point(record.a), build.point(record.b)],
-        referenceLength=record.fixed_length,
+        referenceLength=record.reference(),
         stiffness=record.stiffness,
         damping=record.damping,
         **more,
