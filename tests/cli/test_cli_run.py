@@ -253,4 +253,6 @@ def test_auto_says_what_it_took(tlismni: Command) -> None:
     done = tlismni("run", "chain", "--method", "auto", "--t-end", "0.05")
     assert "auto took adams (order=6): nothing is stiff or damped" in done.out
     assert tlismni("run", "chain", "--method", "auto", "--t-end", "0.05", "--json").json["solver"]["chosen"]
-    assert "has no option ['k']" in tlismni("run", "chain", "--method", "auto", "--option", "k=3").err
+    assert tlismni("run", "chain", "--t-end", "0.05").out.startswith("chain: 0 to 0.05 s with auto")
+    assert "auto took ebdf (k=3)" in tlismni("run", "chain", "--t-end", "0.05", "--option", "k=3").out
+    assert "has no option ['order']" in tlismni("run", "chain", "--method", "auto", "--option", "order=3").err

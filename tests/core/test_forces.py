@@ -151,7 +151,7 @@ def test_applied_torque_turns_a_free_body_as_its_integrals(name):
         bodies=[RigidBody2D(name="b", mass=2.0, inertia=0.5)],
         forces=[AppliedTorque2D(name="t", body="b", torque=signal)],
     )
-    result = simulate(model, 1.5, **TIGHT)
+    result = simulate(model, 1.5, "ebdf", **TIGHT)
     assert np.abs(result["b.angular_velocity"] - 2.0 * once(result.t)).max() < 1e-9
     assert np.abs(result["b.angle"] - 2.0 * twice(result.t)).max() < 1e-9
     assert np.abs(result["b.x"]).max() < 1e-12
