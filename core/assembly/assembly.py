@@ -73,6 +73,8 @@ class ContactInfo:
     """False: the friction of a joint, whose gap and normal force mean nothing."""
     companion: int = 0
     """How far on the contact stands with which it has three tangents together; 0: there is none."""
+    resists_turning: bool = False
+    """Whether it has friction against rolling or spinning."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -321,6 +323,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 size=c.size_in(numbering.length),
                 has_shapes=c.has_shapes,
                 companion=c.companion,
+                resists_turning=c.resists_turning,
             )
             for c in contacts
         ],

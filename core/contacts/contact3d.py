@@ -82,6 +82,10 @@ class Contact3D(ContactElement):
     surface_body: Name | None = None
     """Name of the body whose surface moves, or "ground"; left out: that of the first shape."""
 
+    @property
+    def resists_turning(self) -> bool:
+        return self.turning is not None
+
     @model_validator(mode="after")
     def _slides_with_friction(self) -> "Contact3D":
         if self.turning is not None and self.friction is None:

@@ -73,6 +73,11 @@ class ContactElement(Element):
             )
         return self
 
+    @property
+    def resists_turning(self) -> bool:
+        """Whether it has friction against rolling or spinning."""
+        return False
+
     def signals(self) -> Sequence[Signal]:
         speed = self._surface_signal()
         return () if speed is None else (speed,)

@@ -47,7 +47,7 @@ STEPS_BEFORE = 5  # steps made, and instants with events, before
 TIMES_SIZE = 6
 # columns of `rates`
 FIRST_RATE, SECOND_RATE = 0, 1
-SINCE = 2  # when they were given: for whoever sets them
+RATES_SINCE = 2  # when they were given: for whoever sets them
 RATES_SIZE = 3
 
 QUERY_SIGNATURE = types.int64(WORKSPACE_TYPE, METHOD_TYPE, types.float64)

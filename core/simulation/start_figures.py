@@ -104,6 +104,7 @@ def _measured(point: _Point, assembly: Assembly, t0: float) -> Start:
     return Start(
         contacts=len(assembly.contacts),
         force_laws=any(isinstance(contact.law, ForceLaw) for contact in assembly.contacts),
+        creep=any(contact.resists_turning or contact.bristles for contact in assembly.contacts),
         rate=float(np.sqrt(max(_largest(x) for x in squares))),
         vibration=float(np.sqrt(_largest(stiffness))),
         slowest=float(np.sqrt(np.min(stiffness, initial=_largest(stiffness)))),

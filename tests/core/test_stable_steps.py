@@ -35,7 +35,7 @@ def test_mechanisms_of_rigid_bodies_are_solved_with_four_steps(name: str, parame
     # a stiff spring too: both formulas damp a vibration far beyond the step
     model, ends = load(name, **parameters).model, []
     for options in ({}, {"k": 4}):
-        run = Simulation(model, **ROUGH, **options)
+        run = Simulation(model, "ebdf", **ROUGH, **options)
         run.run_to(0.3)
         assert last_k(run) == 4.0
         ends.append((run.stats["steps"], run.sample().tobytes()))
@@ -43,7 +43,7 @@ def test_mechanisms_of_rigid_bodies_are_solved_with_four_steps(name: str, parame
 
 
 def test_a_vibration_that_is_resolved_keeps_four_steps() -> None:
-    run = Simulation(load("impact_oscillator").model, rtol=1e-8, atol=1e-10, record=False)
+    run = Simulation(load("impact_oscillator").model, "ebdf", rtol=1e-8, atol=1e-10, record=False)
     run.run_to(0.5)
     assert last_k(run) == 4.0
     assert np.isfinite(run.sample()).all()

@@ -244,10 +244,10 @@ def test_given_tolerances_are_absolute(atol):
     model = load("pendulum_stop").model
     for length in (1e-9, 1.0):
         scaled = Units(length=length).model(model)
-        weights = Simulation(scaled, rtol=1e-8, atol=atol).workspace.arrays["atol_q"]
+        weights = Simulation(scaled, "ebdf", rtol=1e-8, atol=atol).workspace.arrays["atol_q"]
         assert math.isclose(weights[0], atol["length"] if isinstance(atol, dict) else atol)
         for part, options in ((1e-9, {}), (1e-6, {"atol": OfScales(1e-6)}), (1e-7, {"atol": 100.0 * OfScales(1e-9)})):
-            sim = Simulation(scaled, rtol=1e-8, **options)
+            sim = Simulation(scaled, "ebdf", rtol=1e-8, **options)
             assert math.isclose(sim.workspace.arrays["atol_q"][0], part * sim.assembly.coordinate_scale[0])
 
 
