@@ -15,7 +15,7 @@ steps do not resolve:
   what is asked for;
 * force laws of contacts, whose stiffness shows only when they close;
 * many contacts: after each event a multistep formula starts anew, with five stages a step;
-* friction against turning and LuGre's, which let what nearly rests creep: `ebdf`;
+* friction against turning and LuGre's, which let what nearly rests creep: `ebdf`, as for contacts at tight tolerances;
 * a model at rest with something stiff in it: nobody knows how slowly it will be moved.
 """
 
@@ -44,7 +44,7 @@ MOST_CONTACTS = 7
 ONE_KIND = 100.0
 """Fastest over slowest vibration of single coordinates, up to which they count as of one kind."""
 TIGHT = 1e-7
-"""Tolerance below which order 8 costs less than order 6."""
+"""Tolerance below which order 8 costs less than order 6, and with contacts `ebdf` less than `WITH_CONTACTS`."""
 WITH_CONTACTS = 5
 """Order with contacts: accelerations may jump without an event (a wheel that rolls over the end of a ledge), which
 estimates of higher orders judge as of smooth motion. Of 150 such runs for each of four tolerances some erred by 7 to
@@ -152,6 +152,8 @@ def choose(start: Start, rtol: float) -> Choice:
         return Choice(
             "irk", {"tableau": "sdirk4" if rough else "radau3"}, f"{unresolved}, and this is stable with any step"
         )
+    if start.contacts and rtol < TIGHT:
+        return Choice("ebdf", {}, f"the model has contacts, and rtol {rtol:g} takes an order beyond {WITH_CONTACTS}")
     what = f"the steps that rtol {rtol:g} allows resolve {_fastest(start)[1]}"
     if start.vibration == start.decay == 0.0:
         what = "nothing is stiff or damped"

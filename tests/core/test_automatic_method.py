@@ -116,9 +116,10 @@ def test_results_are_those_of_the_method_it_took(name, rtol):
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
-def test_contacts_are_solved_with_order_five(rtol):
+def test_contacts_are_solved_with_order_five_or_ebdf(rtol):
     settings = chosen(STOPPED, rtol)
-    assert (settings.method, settings.method_options) == ("adams", {"order": 5})
+    expected = ("adams", {"order": 5}) if rtol > 1e-7 else ("ebdf", {})
+    assert (settings.method, settings.method_options) == expected
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
@@ -138,7 +139,7 @@ def test_a_wheel_rolls_over_the_end_of_a_ledge_within_the_tolerance(rtol):
         slips = [event.t for event in run.events if event.kind == "slip"]
         rolls = run.t < min([*slips, np.inf])
         energy = 0.75 * (run["wheel.vx"] ** 2 + run["wheel.vy"] ** 2) + 9.81 * (run["wheel.y"] - radius)
-        assert np.abs(energy[rolls] / (0.75 * speed**2) - 1.0).max() < 3.0 * rtol
+        assert np.abs(energy[rolls] / (0.75 * speed**2) - 1.0).max() < 6.0 * rtol
 
 
 def test_states_are_of_the_method_whoever_chose_it():
