@@ -116,8 +116,8 @@ def prepare_attempt(workspace: Any, c_q: float, c_v: float, attempt: int, most_o
         evaluate_prediction(workspace, c_q, c_v)
     most_inner = MOST_INNER if workspace.part_first == 0 else MOST_CHEAP_INNER
     slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner
-    # a turning frame predicts coordinates so well that their increments say nothing of the matrices, which turn with the
-    # bodies: old ones would leave multipliers wrong, unseen
+    # in turning frames coordinates are predicted so well that their increments tell nothing of the matrices, which turn
+    # with the bodies: old ones would leave multipliers wrong, unseen
     if attempt > 0 or slow or workspace.n_spins > 0 or not 0.0 <= rate[FACTOR_AGE] < OLDEST:
         status = refactor(workspace, c_q, c_v)
         if status != OK:
