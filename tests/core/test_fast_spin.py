@@ -80,8 +80,8 @@ def test_reactions_of_a_rotor_on_a_hinge_are_as_exact_as_its_motion(method: str)
     ]
     result = simulate(Model(gravity=(0.0, 0.0, 0.0), bodies=[top], joints=[hinge], forces=loads), 2.0, method=method)
     assert result.stats["steps"] < 100
-    assert result["hinge.force_x"] == pytest.approx(-3.0, rel=1e-9)
-    assert result["hinge.torque_x"] == pytest.approx(-0.7, rel=1e-9)
+    assert result["hinge.force_x"] == pytest.approx(-3.0, rel=1e-7)
+    assert result["hinge.torque_x"] == pytest.approx(-0.7, rel=1e-7)
 
 
 @pytest.mark.sampled(6)
