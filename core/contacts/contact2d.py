@@ -82,6 +82,9 @@ class Contact2D(ContactElement):
         more = (least, self.friction.parameters()[-1])
         return tuple(Row((*row.parameters, *more), (*row.coordinates, *own), row.extra) for row in rows)
 
+    def disks(self) -> Sequence[Disk2D]:
+        return tuple(shape for shape in self.shapes() if isinstance(shape, Disk2D))
+
     def lengths(self) -> Sequence[float]:
         return tuple(disk.radius for disk in self.disks())
 
@@ -129,9 +132,6 @@ class DiskOnDisk2D(Contact2D):
     """The first disk."""
     b: Disk2D
     """The second disk."""
-
-    def disks(self) -> Sequence[Disk2D]:
-        return (self.a, self.b)
 
     def extent(self) -> float:
         return self.a.radius + self.b.radius or math.inf

@@ -142,9 +142,8 @@ class Contact3D(ContactElement):
             refuse_points(self.name, self.markers(), bodies, instead)
 
     def spheres(self) -> Sequence[Sphere3D]:
-        """The spheres that it brings in touch: its field `sphere`, if it has one."""
-        sphere: Sphere3D | None = getattr(self, "sphere", None)
-        return () if sphere is None else (sphere,)
+        """The spheres among its shapes."""
+        return tuple(shape for shape in self.shapes() if isinstance(shape, Sphere3D))
 
     def form(self) -> Form:
         """A contact with Coulomb friction has rows of both tangents behind that of the gap, with another law of
@@ -227,9 +226,6 @@ class SphereOnSphere3D(Contact3D):
                 f"contact '{self.name}' is between two points, whose distance is never negative: give one a radius"
             )
         return self
-
-    def spheres(self) -> Sequence[Sphere3D]:
-        return (self.a, self.b)
 
     def extent(self) -> float:
         return self.a.radius + self.b.radius

@@ -125,9 +125,8 @@ class ContactElement(Element):
         return [value for value in values if isinstance(value, Record) and hasattr(value, "marker")]
 
     def disks(self) -> Sequence[Any]:
-        """The planar disks (`Disk2D`) that it brings in touch, for the drawing: its field `disk`, if it has one."""
-        disk = getattr(self, "disk", None)
-        return () if disk is None else (disk,)
+        """The planar disks (`Disk2D`) among its shapes."""
+        return ()
 
     def units_in(self, bodies: Mapping[str, BodyElement]) -> tuple[str, str]:
         """Units of gap and sliding distance in a model with these bodies."""

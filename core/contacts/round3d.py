@@ -75,6 +75,10 @@ class SphereInSphere3D(Contact3D):
             )
         return self
 
+    def spheres(self) -> Sequence[Sphere3D]:
+        """The one inside; the hollow one is no ball."""
+        return (self.sphere,)
+
     def lengths(self) -> Sequence[float]:
         return (self.hollow.radius, self.sphere.radius)
 
