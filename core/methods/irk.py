@@ -5,7 +5,8 @@ The stages are solved in `coupled.py`. Then v_{n+1} = v_n + h sum b_i a_i and
 q_{n+1} = q_n + h v_n + h^2 sum (b^T A)_i a_i; with Radau IIA that is the last stage.
 Error estimate: y_{n+1} - yhat, yhat = y_n + h (b0 f_n + sum_i bhat_i f_i + gamma f(t_{n+1}, yhat)): one more stage
 with the same matrix (de Swart and Soederlind 1997). Gauss methods take it times its ratio to a difference of one order
-less (`Tableau.lower_difference`).
+less (`Tableau.lower_difference`), but never less than what a jump within the step would show
+(`Tableau.jump_difference`).
 """
 
 from typing import Any
@@ -23,7 +24,7 @@ from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER,
 from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows
-from .stages import BA, EMBEDDED, END, GAMMA, LOWER, START, VECTORS, B, load_stage, stage_count, stage_rows
+from .stages import BA, EMBEDDED, END, GAMMA, JUMP, LOWER, START, VECTORS, B, load_stage, stage_count, stage_rows
 
 # parameters, besides STAGE_COUNT
 STIFFLY_ACCURATE = 1
@@ -141,7 +142,8 @@ def _norm(workspace: Any, of_q: Any, of_v: Any) -> float:
 
 @internal
 def _error_of_step(workspace: Any, method: Any, h: float) -> float:
-    """Norm of (q, v, work) less yhat; times its ratio to the lower difference where the method has one."""
+    """Norm of (q, v, work) less yhat; times its ratio to the lower difference where the method has one, and at least
+    the difference that sees jumps."""
     n = workspace.n_ext
     table, rows, stages = weight_rows(method), stage_rows(workspace), stage_count(method)
     q, v = vec(workspace.q, n), vec(workspace.v, n)
@@ -156,7 +158,17 @@ def _error_of_step(workspace: Any, method: Any, h: float) -> float:
             hat_q[l] += h * table[EMBEDDED, LOWER + i] * rows[i, n + l]
             hat_v[l] += h * table[EMBEDDED, LOWER + i] * rows[i, 2 * n + l]
     lower = _norm(workspace, hat_q, hat_v)
-    return distance * distance / np.hypot(distance, lower) if distance > 0.0 else distance
+    if lower == 0.0:
+        return distance
+    a, old = vec(workspace.a, n), history_row(workspace, method, 0)
+    start, end = h * table[EMBEDDED, JUMP], h * table[EMBEDDED, JUMP + stages + 1]
+    for l in range(n):
+        hat_q[l] = start * old[n + l] + end * v[l]
+        hat_v[l] = start * old[2 * n + l] + end * a[l]
+        for i in range(stages):
+            hat_q[l] += h * table[EMBEDDED, JUMP + 1 + i] * rows[i, n + l]
+            hat_v[l] += h * table[EMBEDDED, JUMP + 1 + i] * rows[i, 2 * n + l]
+    return max(_norm(workspace, hat_q, hat_v), distance * distance / np.hypot(distance, lower))
 
 
 @internal

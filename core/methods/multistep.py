@@ -10,7 +10,7 @@ from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..stage.solver import weighted_norm
-from ..state.method_records import MAX_NODES
+from ..state.method_records import WEIGHTS_WIDTH
 from ..state.workspace_records import call_stage
 from .history import history_row, history_time
 
@@ -18,7 +18,7 @@ from .history import history_row, history_time
 @inlined
 def weight_rows(method: Any) -> Any:
     """Table of the coefficients."""
-    return mat(method.weights, 8, MAX_NODES)
+    return mat(method.weights, 8, WEIGHTS_WIDTH)
 
 
 COUNT_ROW = 7  # of the table of coefficients: for how many nodes it was made

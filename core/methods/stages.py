@@ -15,8 +15,9 @@ from .multistep import weight_rows
 A, A_SQUARED, SHIFT, SHIFT2, VECTORS, EMBEDDED, INVERSE, MEMORY = range(8)
 # parts of VECTORS: nodes c, b, b^T A, extrapolation of the stages to the end
 NODES, B, BA, END = 0, COUPLED_STAGES, 2 * COUPLED_STAGES, 3 * COUPLED_STAGES
-# parts of EMBEDDED after the weights of the stages: weight of the start, gamma, weights of the lower difference
-START, GAMMA, LOWER = COUPLED_STAGES, COUPLED_STAGES + 1, COUPLED_STAGES + 2
+# parts of EMBEDDED after the weights of the stages: weight of the start, gamma, weights of the lower difference and of
+# the one that sees jumps
+START, GAMMA, LOWER, JUMP = COUPLED_STAGES, COUPLED_STAGES + 1, COUPLED_STAGES + 2, 2 * COUPLED_STAGES + 2
 # columns of MEMORY: contraction of the sweeps; sweeps, inner iterations for each stage and size of the last step
 SWEEP_RATE, LAST_SWEEPS, INNER_EACH, LAST_STEP = range(4)
 STAGE_COUNT = 0  # parameter

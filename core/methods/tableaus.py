@@ -89,6 +89,23 @@ class Tableau:
         divided = np.array([1.0 / np.prod([x - y for y in c if y != x]) for x in c])
         return np.asarray(self.gamma * divided / divided[-1])
 
+    def jump_difference(self) -> Floats:
+        """Weights (s + 2,) of h f at the start, the stages and the end of the step: their difference of order s + 1.
+
+        Where f jumps within the step the differences do not fall from one order to the next, and what
+        `lower_difference` reduces is as large as the error. A jump in f shows in this difference with at least a
+        quarter of its error, wherever it lies. A linear equation does not: its collocation polynomial has degree s.
+        Zero for the stiffly accurate methods.
+        """
+        nodes = np.array((0.0, *self.c, 1.0))
+        if self.stiffly_accurate:
+            return np.zeros(len(nodes))
+        divided = np.array([1.0 / np.prod([x - y for y in nodes if y != x]) for x in nodes])
+        # a unit jump between two nodes is seen as the sum of the weights before it, and integrated as 1 from its place
+        seen, integral = np.abs(np.cumsum(divided)[:-1]), np.cumsum((0.0, *self.b))
+        missed = np.maximum(np.abs(nodes[:-1] - integral), np.abs(nodes[1:] - integral))
+        return np.asarray(0.25 * divided * np.max(missed / seen))
+
     def sweep_error(self, d: Floats, k: Floats) -> Floats:
         """E(d, k) of the module's docstring for damping d >= 0 (N,) and stiffness k >= 0 (N,), as (N, s, s)."""
         scale = (1.0 + d + k)[:, None, None]
@@ -116,10 +133,11 @@ class Tableau:
 
         vectors = np.zeros((4, COUPLED_STAGES))
         vectors[:, : len(b)] = self.c, b, b @ a, self.end_extrapolation()
-        tail = np.zeros(2 * COUPLED_STAGES + 2)
+        tail = np.zeros(3 * COUPLED_STAGES + 4)
         tail[: len(b)] = embedded
         tail[COUPLED_STAGES : COUPLED_STAGES + 2] = start, self.gamma
         tail[COUPLED_STAGES + 2 : COUPLED_STAGES + 2 + len(b)] = self.lower_difference()
+        tail[2 * COUPLED_STAGES + 2 : 2 * COUPLED_STAGES + 4 + len(b)] = self.jump_difference()
         return (
             block(a),
             block(a @ a),

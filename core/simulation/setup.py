@@ -18,7 +18,7 @@ from ..events.progress import GUARD_SIZE
 from ..methods.order_selection import LEAST_K, MOST_K, select_stable_k
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
-from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, MAX_NODES, METHOD, RING_SIZE, K, step_address
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, METHOD, RING_SIZE, WEIGHTS_WIDTH, K, step_address
 from ..state.run_records import (
     A2,
     ACCELERATIONS_SIGNATURE,
@@ -56,7 +56,7 @@ def state_fields(assembly: Assembly) -> list[Field]:
         ("method_times", np.float64, (HISTORY_ROWS,)),
         ("method_ring", np.int64, (RING_SIZE,)),
         ("method_parameters", np.float64, (8,)),
-        ("method_weights", np.float64, (8, MAX_NODES)),
+        ("method_weights", np.float64, (8, WEIGHTS_WIDTH)),
         ("method_error", np.float64, (2,)),
         ("method_choice", np.float64, (CHOICE_SIZE,)),
         ("clock", np.float64, (CLOCK_SIZE,)),

@@ -17,7 +17,7 @@ METHOD = np.dtype(
             "times",      # (capacity,) float64
             "ring",       # (RING_SIZE,) int64: position of the newest row, number of rows, points of a long step
             "parameters", # (8,) float64: alpha, beta, gamma ...; the last two are CARRIES, ESTIMATE
-            "weights",    # (8, MAX_NODES) float64: nodes and coefficients of the present grid; a tableau
+            "weights",    # (8, WEIGHTS_WIDTH) float64: nodes and coefficients of the present grid; a tableau
             "error",      # (2,) float64: error norm of the last step, order of its estimate
             "choice",     # (CHOICE_SIZE,) float64: steps k of a multistep formula, and what order selection proposes
             "exact",      # 1: samples between steps are projected onto the constraints; 0: shown as they are
@@ -27,7 +27,9 @@ METHOD = np.dtype(
 METHOD_TYPE = types.from_dtype(METHOD)
 
 MAX_NODES = 12
-"""Most rows of history that a formula uses, and the width of `weights`."""
+"""Most rows of history that a formula uses."""
+WEIGHTS_WIDTH = 13
+"""Columns of `weights`."""
 
 RING_SIZE = 3
 
