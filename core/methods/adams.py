@@ -6,7 +6,7 @@ one: C_AM / (C_AB - C_AM) (y_AM - y_AB), both constants for the actual grid (Sha
 
 The constants, 0.03 to 0.1, are those of a smooth y'. Where y' jumps in the step y_AM - y_AB is itself as large as the
 error, and no smaller than the same difference for the order p - 1, which in smooth motion is larger by 1/(h omega). The
-constants are replaced by the fifth power of the ratio of the two where that is more.
+constants are replaced by the eighth power of the ratio of the two where that is more.
 """
 
 from typing import Any
@@ -30,8 +30,8 @@ POINT_WEIGHTS = 0.5 * _W
 UNCERTAIN = 10.0
 """Differences y_AM - y_AB up to which only the constants count, in error weights: formulas of order 8 make as much of
 the tolerances of the inner loop, and of vibrations at their limit of stability."""
-SHARP = 5
-"""Power of the ratio of differences: one that steps resolve well, 0.5, must not be taken for a jump."""
+SHARP = 8
+"""Power of the ratio of differences: 0.7, of vibrations that steps hardly resolve, must not be taken for a jump."""
 
 
 @compiled

@@ -32,12 +32,13 @@ C = np.array([1 / 4, 3 / 4, 11 / 20, 1 / 2, 1])
 DIFFERENCES = np.array(
     [
         [25 / 24 - 59 / 48, -49 / 48 + 17 / 96, 125 / 16 - 225 / 32, 0, 1 / 4, 0],
-        [-67 / 80, -163 / 160, 45 / 32, 0, 1 / 5, 1 / 4],
+        [-67 / 160, -163 / 320, 45 / 64, 0, 1 / 10, 1 / 8],
     ]
 )
 """Weights of f at the stages and at the start, both of order 3: the embedded difference, and one that contains the
-start. With 1/4 a jump just before the first stage is seen with the size of its error; the multiple of the first that
-the conditions leave free is near the one that makes the second smallest in smooth motion."""
+start. With 1/8 a jump just before the first stage is seen with half of its error, and smooth motion seldom with more
+than in the first; the multiple of the first that the conditions leave free is near the one that makes the second
+smallest."""
 STAGES = 5
 
 EQUAL_PARTS = 128
