@@ -15,6 +15,7 @@ import numpy as np
 from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
+from ..stage.corotating import to_formula
 from ..stage.inner import inner_loop
 from ..stage.matrices import refactor
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
@@ -88,13 +89,14 @@ def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple
     increment = vec(workspace.rhs, workspace.n + multipliers)
     counters = ivec(workspace.counters, COUNTERS_SIZE)
     for i in range(stage_count(method)):
-        load_stage(workspace, method, i, t, h)
+        row = rows[i]
         for j in range(i):
             shift_q = h * h * table[SHIFT2, COUPLED_STAGES * i + j]
             shift_v = h * table[SHIFT, COUPLED_STAGES * i + j]
             for l in range(workspace.n):
-                q[l] += shift_q * rows[j, 3 * n + l]
-                v[l] += shift_v * rows[j, 3 * n + l]
+                row[l] += shift_q * rows[j, 3 * n + l]
+                row[n + l] += shift_v * rows[j, 3 * n + l]
+        load_stage(workspace, method, i, t, h)
         evaluate_residuals(workspace)
         status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status == OK and simple:
@@ -103,7 +105,7 @@ def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple
             return status
         solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
-        row = rows[i]
+        to_formula(workspace, row, increment)
         for l in range(workspace.n):
             # with what the inner loop has corrected: the next sweep need not find it again
             row[l] = q[l]

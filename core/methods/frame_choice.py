@@ -15,6 +15,7 @@ from ..compiled.views import mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import RATES, enter, four_of, product, put_four, set_rates
 from ..state.method_records import CHOICE_SIZE, K
+from ..state.workspace_records import CONTROL_SIZE, RTOL
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -22,8 +23,9 @@ MOST_TURN = 1.0
 """Beyond which a body's attitude stays in the frame of space: the outer loop would not converge."""
 SMOOTHER = 0.1
 """Differences in a frame are at most this part of those in space: errors there have up to three times the frequency."""
-NEGLIGIBLE = 1e-10
-"""What a formula may err by in a step in space, rad, at most, to stay there: rounding in a frame would be more soon."""
+NEGLIGIBLE, PART = 1e-10, 0.01
+"""What a formula may err by in a step in space, rad, at most, to stay there, where rounding in a frame would be more
+soon; and that as a part of the tolerance: what comes near to it holds the step."""
 
 
 @inlined
@@ -95,7 +97,8 @@ def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bo
     w = space_rate(p, four_of(row, n + i))
     size = h * np.sqrt(_dot(w, w))
     order = max(vec(method.choice, CHOICE_SIZE)[K], 2.0)
-    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < NEGLIGIBLE:
+    negligible = min(NEGLIGIBLE, PART * vec(workspace.control, CONTROL_SIZE)[RTOL])
+    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < negligible:
         return False
     rows = min(rows_available(method), 3)
     second = mat(workspace.scratch, 3, 4)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..stage.corotating import POINT, RATES, enter, four_of, plus_times, put_four, rotation_of, times_function
+from ..stage.corotating import POINT, RATES, enter, four_of, plus_times, put_four, recall_point
 from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, RING_SIZE, call_step
 from ..state.workspace_records import (
     CONTROL_SIZE,
@@ -20,6 +20,8 @@ from ..state.workspace_records import (
 )
 from .frame_choice import choose_frame
 from .history import history_row, history_time, row_index
+from .multistep import rows_available
+from .newmark import ALPHA
 
 LARGEST_TURN = 0.4
 """By which a frame may turn in a step under error control, rad: a sixteenth of a turn. What is asked for between steps
@@ -42,6 +44,13 @@ def _share_weights(workspace: Any, i: int) -> None:
 
 
 @internal
+def _carry(method: Any, a: Any, before: Any, aux: Any, i: int) -> None:
+    """What Newmark's formula carries beside accelerations a, into aux[i] and the three behind it. It is a difference
+    of accelerations in one frame, which those in another frame do not give: it is found anew there."""
+    put_four(aux, i, plus_times(a, plus_times(a, before, -1.0), vec(method.parameters, 8)[ALPHA]))
+
+
+@internal
 def _begin(workspace: Any, method: Any, t: float) -> None:
     """Choose the frames until t, the end of the step, and put the history that is in them in its place, if there are
     some."""
@@ -60,24 +69,22 @@ def _begin(workspace: Any, method: Any, t: float) -> None:
     workspace.n_spins = count
     if count == 0:
         return
-    rows, carries = (
-        mat(workspace.turned, method.capacity, workspace.row_length),
-        vec(method.parameters, 8)[CARRIES] != 0.0,
-    )
+    rows = mat(workspace.turned, method.capacity, workspace.row_length)
     for back in range(ivec(method.ring, RING_SIZE)[1]):
         row, to = history_row(workspace, method, back), rows[row_index(method, back)]
         for i in range(workspace.row_length):
             to[i] = row[i]
-        q, v, a, aux = to[:n], to[n : 2 * n], to[2 * n : 3 * n], to[3 * n : 4 * n]
+        q, v, a = to[:n], to[n : 2 * n], to[2 * n : 3 * n]
         at = history_time(method, back)
         for k in range(count):
+            enter(spins[k], at, q, v, a, spinning[k])
+    if vec(method.parameters, 8)[CARRIES] != 0.0:
+        row, newest = history_row(workspace, method, 0), rows[row_index(method, 0)]
+        for k in range(count):
             i = spinning[k]
-            # what a formula carries turns as accelerations do
-            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
-            enter(spins[k], at, q, v, a, i)
-            if back == 0 and carries:
-                own = times_function(spins[k], rotation_of(spins[k], t - at), carried)
-                put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
+            smooth = rows_available(method) > 1 and four_of(row, 3 * n + i) != four_of(row, 2 * n + i)
+            before = rows[row_index(method, 1)] if smooth else newest
+            _carry(method, four_of(newest, 2 * n + i), four_of(before, 2 * n + i), newest, 3 * n + i)
     method.history, workspace.turned = workspace.turned, method.history
 
 
@@ -85,21 +92,16 @@ def _begin(workspace: Any, method: Any, t: float) -> None:
 def _end(workspace: Any, method: Any, done: bool) -> None:
     """The history in space again, and, where the step is `done`, the workspace's point."""
     n, count = workspace.n_ext, workspace.n_spins
-    workspace.n_spins = 0
     if count == 0:
         return
     method.history, workspace.turned = workspace.turned, method.history
-    if not done:
-        return
-    q, v, a, aux = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.aux, n)
-    for k in range(count):
-        i, spin = ivec(workspace.spinning, count)[k], mat(workspace.spin, count, SPIN_SIZE)[k]
-        if vec(method.parameters, 8)[CARRIES] != 0.0:
-            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
-            put_four(aux, i, plus_times(four_of(spin, POINT + 8), carried, 1.0))
-        put_four(q, i, four_of(spin, POINT))
-        put_four(v, i, four_of(spin, POINT + 4))
-        put_four(a, i, four_of(spin, POINT + 8))
+    if done:
+        recall_point(workspace)
+        row = history_row(workspace, method, 0)
+        for k in range(count if vec(method.parameters, 8)[CARRIES] != 0.0 else 0):
+            i = ivec(workspace.spinning, count)[k]
+            _carry(method, four_of(vec(workspace.a, n), i), four_of(row, 2 * n + i), vec(workspace.aux, n), i)
+    workspace.n_spins = 0
 
 
 @internal

@@ -82,8 +82,6 @@ class Formula:
     """First content of the method record's `weights`, row by row."""
     carries: bool = False
     """True if it carries accelerations of its own from step to step, beside the true ones."""
-    turns: bool = True
-    """True if attitudes in space are integrated in turning frames (`frames.py`)."""
     sums_up: float = 0.0
     """Order p (2 or more) of a formula that is judged by its own error of a step; 0: by that of a formula of one order
     less, which it is better than, or not at all (`working_tolerance`)."""
