@@ -5,9 +5,9 @@ Unknowns are the accelerations a_i of all stages (independent coordinates; the i
 A sweep goes through the stages in turn: the point of stage i is shifted by the corrections that stages j < i have
 found (v by h S_ij da_j, q by h^2 (S S)_ij da_j; S of `tableaus.py`), the inner loop brings it onto the constraints,
 and the matrix M + h gamma D + (h gamma)^2 K, bordered by Phi_q, gives (da_i, dlambda_i). Then all points move as the
-tableau says. The fixed point is the solution, whatever the matrices are. In turning frames each stage has its own
-nevertheless: the attitudes of a step differ by up to a sixteenth of a turn, and the moves of coordinates, which are
-predicted to rounding there, do not show how far multipliers are from the fixed point.
+tableau says. The fixed point is the solution, whatever the matrices are. In turning frames the first sweep has those of
+each stage nevertheless: the moves of coordinates, which are predicted to rounding there, do not show how far the
+multipliers are from the fixed point. After it multipliers err as little as accelerations do.
 """
 
 from typing import Any
@@ -83,8 +83,8 @@ def _refactor(workspace: Any, method: Any, t: float, h: float, simple: bool) -> 
 
 
 @internal
-def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple: bool) -> int:
-    """One pass over the stages: corrections of their accelerations and multipliers."""
+def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple: bool, own: bool) -> int:
+    """One pass over the stages: corrections of their accelerations and multipliers; `own`: with matrices of each."""
     n, multipliers = workspace.n_ext, workspace.m_act + workspace.n_implied
     table, rows = weight_rows(method), stage_rows(workspace)
     c_v, status = h * table[EMBEDDED, GAMMA], OK
@@ -100,7 +100,7 @@ def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple
                 row[l] += shift_q * rows[j, 3 * n + l]
                 row[n + l] += shift_v * rows[j, 3 * n + l]
         load_stage(workspace, method, i, t, h)
-        if workspace.n_spins > 0 and not simple:
+        if own:
             status = refactor(workspace, c_v * c_v, c_v)
         if status == OK:
             evaluate_residuals(workspace)
@@ -165,9 +165,10 @@ def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> i
     slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
     start_inner = counters[INNER]
     previous, before = np.inf, np.inf
-    renewed = 2 if workspace.n_spins > 0 else 0
+    renewed = 0
     for k in range(int(control[MAX_OUTER]) * (1 if simple else SWEEPS)):
-        status = _sweep(workspace, method, t, h, slack, simple)
+        own = k == 0 and workspace.n_spins > 0 and not simple
+        status = _sweep(workspace, method, t, h, slack, simple, own)
         if status != OK:
             return status
         norm = _move(workspace, method, h)

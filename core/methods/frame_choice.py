@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import inlined, internal
-from ..compiled.views import mat, vec
+from ..compiled.views import ivec, mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import RATES, enter, four_of, product, put_four, set_rates
 from ..state.method_records import CHOICE_SIZE, K
-from ..state.workspace_records import CONTROL_SIZE, RTOL
+from ..state.workspace_records import CONTROL_SIZE, RTOL, SPIN_SIZE
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -88,7 +88,7 @@ def _precession(workspace: Any, method: Any, i: int) -> Any:
 
 
 @internal
-def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bool:
+def _choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bool:
     """Whether a frame makes the motion of a body until t smoother, and which: its rates in `spin`."""
     n, row, at = workspace.n_ext, history_row(workspace, method, 0), history_time(method, 0)
     # of the newest step while it is looked at which formula is to follow
@@ -118,3 +118,16 @@ def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bo
             return True
         set_rates(spin, w, none, t)
     return own < most
+
+
+@internal
+def choose_frames(workspace: Any, method: Any, t: float) -> int:
+    """The frames until t, the end of the step, and the bodies that are in them, to `spin` and `spinning`; their
+    number. With t the time of the newest row it is the frames of another step like the last one."""
+    count, spins = 0, mat(workspace.spin, workspace.n_attitudes, SPIN_SIZE)
+    for k in range(workspace.n_attitudes):
+        i = ivec(workspace.attitudes, workspace.n_attitudes)[k]
+        if _choose_frame(workspace, method, spins[count], i, t):
+            ivec(workspace.spinning, workspace.n_attitudes)[count] = i
+            count += 1
+    return count

@@ -73,6 +73,26 @@ def test_a_rotor_on_a_hinge_keeps_its_speed(method: str, options: dict) -> None:
     assert steps <= 20.0
 
 
+@every_formula
+def test_a_rotor_with_its_centre_of_mass_off_the_axis_keeps_its_speed(method: str, options: dict) -> None:
+    # the start has one of its positions as the independent coordinate: the attitude is, from the second step on
+    speed = 30.0
+    rotor = RigidBody3D(
+        name="rotor", mass=2.0, inertia=(0.1, 0.2, 0.25), position=(0.1, 0.0, 0.0), velocity=(0.0, 0.1 * speed, 0.0),
+        angular_velocity=(0.0, 0.0, speed),
+    )  # fmt: skip
+    hinge = Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="rotor", point=(-0.1, 0.0, 0.0)))
+    model = Model(gravity=(0.0, 0.0, 0.0), bodies=[rotor], joints=[hinge])
+    result = simulate(model, TURNS * 2.0 * np.pi / speed, method=method, **options)
+    assert result.stats["steps"] / TURNS <= 20.0
+    energy = result["energy.kinetic"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-6
+    begun = int(np.searchsorted(result.t, 0.1 * result.t[-1]))
+    assert abs(energy[-1] / energy[begun] - 1.0) < 1e-10
+    pull = np.hypot(result["hinge.force_x"], result["hinge.force_y"])[begun:]
+    assert pull == pytest.approx(2.0 * 0.1 * speed**2, rel=1e-6)
+
+
 @pytest.mark.full
 @every_formula
 def test_a_body_keeps_energy_and_momentum_over_ten_thousand_turns(method: str, options: dict) -> None:
