@@ -70,7 +70,7 @@ FINE = 1e-3
 
 def _irk(name: str) -> Formula:
     if name == "sdirk4":
-        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE)
+        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE, embedded=True)
     tableau = TABLEAUS[name]
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)

@@ -82,7 +82,7 @@ def build_method(formula: Formula, settings: Settings, has_waves: bool, state: N
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     if formula.stage is None:
-        parameters[PREDICTS] = float(formula.sums_up > 0.0)
+        parameters[PREDICTS] = float(formula.sums_up > 0.0 or formula.embedded)
     parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
     if formula.select is select_stable_k and not has_waves:
         parameters[LEAST_K] = parameters[MOST_K]

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from tlismni.core import Model, RigidBody3D, simulate
 
 MOMENTS, RATE, T_END = np.array([0.145, 0.155, 0.25]), np.array([20.0, -10.0, 40.0]), 0.4
-STEPS = (160, 320)
+STEPS = (120, 240)
 
 
 def equations(t: float, y: np.ndarray) -> np.ndarray:
