@@ -50,7 +50,7 @@ from ..laws.friction.base import FRICTION_SIGNATURE, FrictionLaw
 from ..linalg import dense, record, row_pivoting, small, sparse
 from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, analyze_sparse, follow, lay_out_now, use_pivots
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
-from ..methods import adams, history, order_selection, park
+from ..methods import adams, frame_partition, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
 from ..recovery import compiled_repartition
 from ..simulation import begin_now, exchange, normal_form, read_channels, slopes
@@ -147,6 +147,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield derived.derive_rows, (_MATRIX, types.Array(_WHOLE, 2, "C"), _WHOLES, _REALS, _MATRIX)
     yield history.recall, (_WS, _MS, _WHOLE)
     yield history.restart, (_WS, _MS)
+    yield frame_partition.prefer_attitudes, (_WS, _MS, _REAL)
     yield crossings.remember, (_WS, _LC)
     yield crossings.friction_margin, (_WS, _WHOLE)
     yield time_loop.set_weights_at, (_WS, _MS)

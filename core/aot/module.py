@@ -160,7 +160,8 @@ _SELDOM = tuple(
         "elements.relative_spin3d", "elements.rolling3d",
         "elements.spherical_friction3d", "event_detection.contact_evaluation", "event_detection.event_search",
         "event_detection.joint_loads", "event_detection.repivoting", "event_detection.roots", "events",
-        "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice", "methods.frames",
+        "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice",
+        "methods.frame_partition", "methods.frames",
         "recovery", "simulation", "stage.corotating", "stage.jfnk", "stage.simple", "time_loop.time_stepping",
     )
 )  # fmt: skip

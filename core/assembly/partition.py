@@ -19,15 +19,15 @@ def pivots_of(workspace: Workspace, tolerance: float = RANK_TOLERANCE) -> RowPiv
 
     Columns are scaled by the size of their coordinates, so that units do not choose.
     """
-    assembly, active = workspace.assembly, workspace.structure.active
+    active = workspace.structure.active
     if len(active) == 0:
         none = np.zeros(0, dtype=np.int64)
         return RowPivots(none, 0, none, [])
     rows, cols, values = workspace.jacobian()
     indptr = np.searchsorted(rows, np.arange(len(active) + 1))
     check = not np.isfinite(values).all()  # which says what is wrong; all else holds by itself
-    scale = assembly.coordinate_scale
-    return pivot_rows(len(active), assembly.n, indptr, cols, values, scale, tolerance, check)
+    scale = workspace.arrays["scale"]
+    return pivot_rows(len(active), workspace.assembly.n, indptr, cols, values, scale, tolerance, check)
 
 
 def what_repeats(workspace: Workspace, pivots: RowPivots) -> str:

@@ -5,7 +5,9 @@ Unknowns are the accelerations a_i of all stages (independent coordinates; the i
 A sweep goes through the stages in turn: the point of stage i is shifted by the corrections that stages j < i have
 found (v by h S_ij da_j, q by h^2 (S S)_ij da_j; S of `tableaus.py`), the inner loop brings it onto the constraints,
 and the matrix M + h gamma D + (h gamma)^2 K, bordered by Phi_q, gives (da_i, dlambda_i). Then all points move as the
-tableau says. The fixed point is the solution, whatever the matrices are.
+tableau says. The fixed point is the solution, whatever the matrices are. In turning frames the first sweep has those of
+each stage nevertheless: the moves of coordinates, which are predicted to rounding there, do not show how far the
+multipliers are from the fixed point. After it multipliers err as little as accelerations do.
 """
 
 from typing import Any
@@ -15,6 +17,7 @@ import numpy as np
 from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
+from ..stage.corotating import to_formula
 from ..stage.inner import inner_loop
 from ..stage.matrices import refactor
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
@@ -80,30 +83,35 @@ def _refactor(workspace: Any, method: Any, t: float, h: float, simple: bool) -> 
 
 
 @internal
-def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple: bool) -> int:
-    """One pass over the stages: corrections of their accelerations and multipliers."""
+def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple: bool, own: bool) -> int:
+    """One pass over the stages: corrections of their accelerations and multipliers; `own`: with matrices of each."""
     n, multipliers = workspace.n_ext, workspace.m_act + workspace.n_implied
     table, rows = weight_rows(method), stage_rows(workspace)
+    c_v, status = h * table[EMBEDDED, GAMMA], OK
     q, v, active = vec(workspace.q, n), vec(workspace.v, n), ivec(workspace.active, multipliers)
     increment = vec(workspace.rhs, workspace.n + multipliers)
     counters = ivec(workspace.counters, COUNTERS_SIZE)
     for i in range(stage_count(method)):
-        load_stage(workspace, method, i, t, h)
+        row = rows[i]
         for j in range(i):
             shift_q = h * h * table[SHIFT2, COUPLED_STAGES * i + j]
             shift_v = h * table[SHIFT, COUPLED_STAGES * i + j]
             for l in range(workspace.n):
-                q[l] += shift_q * rows[j, 3 * n + l]
-                v[l] += shift_v * rows[j, 3 * n + l]
-        evaluate_residuals(workspace)
-        status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
+                row[l] += shift_q * rows[j, 3 * n + l]
+                row[n + l] += shift_v * rows[j, 3 * n + l]
+        load_stage(workspace, method, i, t, h)
+        if own:
+            status = refactor(workspace, c_v * c_v, c_v)
+        if status == OK:
+            evaluate_residuals(workspace)
+            status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status == OK and simple:
             status = refactor(workspace, 0.0, 0.0)
         if status != OK:
             return status
         solve_increment(workspace, workspace.kkt)
         counters[OUTER] += 1
-        row = rows[i]
+        to_formula(workspace, row, increment)
         for l in range(workspace.n):
             # with what the inner loop has corrected: the next sweep need not find it again
             row[l] = q[l]
@@ -159,7 +167,8 @@ def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> i
     previous, before = np.inf, np.inf
     renewed = 0
     for k in range(int(control[MAX_OUTER]) * (1 if simple else SWEEPS)):
-        status = _sweep(workspace, method, t, h, slack, simple)
+        own = k == 0 and workspace.n_spins > 0 and not simple
+        status = _sweep(workspace, method, t, h, slack, simple, own)
         if status != OK:
             return status
         norm = _move(workspace, method, h)

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import inlined, internal
-from ..compiled.views import mat, vec
+from ..compiled.views import ivec, mat, vec
 from ..model.rotation3d import space_rate
 from ..stage.corotating import RATES, enter, four_of, product, put_four, set_rates
 from ..state.method_records import CHOICE_SIZE, K
+from ..state.workspace_records import CONTROL_SIZE, RTOL, SPIN_SIZE
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -22,8 +23,9 @@ MOST_TURN = 1.0
 """Beyond which a body's attitude stays in the frame of space: the outer loop would not converge."""
 SMOOTHER = 0.1
 """Differences in a frame are at most this part of those in space: errors there have up to three times the frequency."""
-NEGLIGIBLE = 1e-10
-"""What a formula may err by in a step in space, rad, at most, to stay there: rounding in a frame would be more soon."""
+NEGLIGIBLE, PART = 1e-10, 0.01
+"""What a formula may err by in a step in space, rad, at most, to stay there, where rounding in a frame would be more
+soon; and that as a part of the tolerance: what comes near to it holds the step."""
 
 
 @inlined
@@ -86,7 +88,7 @@ def _precession(workspace: Any, method: Any, i: int) -> Any:
 
 
 @internal
-def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bool:
+def _choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bool:
     """Whether a frame makes the motion of a body until t smoother, and which: its rates in `spin`."""
     n, row, at = workspace.n_ext, history_row(workspace, method, 0), history_time(method, 0)
     # of the newest step while it is looked at which formula is to follow
@@ -95,7 +97,8 @@ def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bo
     w = space_rate(p, four_of(row, n + i))
     size = h * np.sqrt(_dot(w, w))
     order = max(vec(method.choice, CHOICE_SIZE)[K], 2.0)
-    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < NEGLIGIBLE:
+    negligible = min(NEGLIGIBLE, PART * vec(workspace.control, CONTROL_SIZE)[RTOL])
+    if 2.0 * size > MOST_TURN or size ** (order + 1.0) < negligible:
         return False
     rows = min(rows_available(method), 3)
     second = mat(workspace.scratch, 3, 4)
@@ -115,3 +118,16 @@ def choose_frame(workspace: Any, method: Any, spin: Any, i: int, t: float) -> bo
             return True
         set_rates(spin, w, none, t)
     return own < most
+
+
+@internal
+def choose_frames(workspace: Any, method: Any, t: float) -> int:
+    """The frames until t, the end of the step, and the bodies that are in them, to `spin` and `spinning`; their
+    number. With t the time of the newest row it is the frames of another step like the last one."""
+    count, spins = 0, mat(workspace.spin, workspace.n_attitudes, SPIN_SIZE)
+    for k in range(workspace.n_attitudes):
+        i = ivec(workspace.attitudes, workspace.n_attitudes)[k]
+        if _choose_frame(workspace, method, spins[count], i, t):
+            ivec(workspace.spinning, workspace.n_attitudes)[count] = i
+            count += 1
+    return count

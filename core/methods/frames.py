@@ -6,8 +6,8 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..stage.corotating import POINT, RATES, enter, four_of, plus_times, put_four, rotation_of, times_function
-from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, RING_SIZE, call_step
+from ..stage.corotating import RATES, enter, four_of, plus_times, put_four, recall_point
+from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, PREDICTS, RING_SIZE, call_step
 from ..state.workspace_records import (
     CONTROL_SIZE,
     EXACTNESS,
@@ -18,8 +18,11 @@ from ..state.workspace_records import (
     SENSITIVITY,
     SPIN_SIZE,
 )
-from .frame_choice import choose_frame
+from .frame_choice import choose_frames
+from .frame_partition import partition_ends
 from .history import history_row, history_time, row_index
+from .multistep import rows_available
+from .newmark import ALPHA
 
 LARGEST_TURN = 0.4
 """By which a frame may turn in a step under error control, rad: a sixteenth of a turn. What is asked for between steps
@@ -28,56 +31,61 @@ FAST, FINER, COARSER = 0.5, 1e-4, 100.0
 """Part of LARGEST_TURN beyond which it is the turn that limits the step, and not the error; by how much finer the outer
 loop solves then, and by how much less fine if it fails. What it leaves would be the largest error, and energy would
 drift with it. It costs nothing: the frames predict such steps so well that the iterations begin there, or nearly."""
-LEAST_PART = 0.25
-"""Of a unit quaternion, that a component which a partition relies on has, over the next two steps: with less, what the
-iterations leave is large in the dependent parameters, and a turning frame makes it an error of all of them."""
+NOT_COUNTED = 1e30
+"""Error weight of positions and velocities that are not counted."""
 
 
 @internal
-def _share_weights(workspace: Any, i: int) -> None:
-    """Error weights of a body's Euler parameters in a frame: those of their mean, as each is in turn."""
-    for weights in (vec(workspace.weight_q, workspace.n_ext), vec(workspace.weight_v, workspace.n_ext)):
+def _share_weights(workspace: Any, i: int, predicts: bool) -> None:
+    """Error weights of a body's Euler parameters in a frame: those of their mean, as each is in turn. Positions that
+    follow from the attitude swing where that does not: differences from what the history `predicts` are no errors."""
+    n, dependent = workspace.n_ext, ivec(workspace.dependent, workspace.m_act)
+    weight_q, weight_v = vec(workspace.weight_q, n), vec(workspace.weight_v, n)
+    for weights in (weight_q, weight_v):
         mean = 0.25 * (weights[i] + weights[i + 1] + weights[i + 2] + weights[i + 3])
         put_four(weights, i, (mean, mean, mean, mean))
+    for d in range(workspace.m_act if predicts else 0):
+        l = dependent[d]
+        if i - 3 <= l < i:
+            weight_v[l] = NOT_COUNTED
+            if d < workspace.m_held:
+                weight_q[l] = NOT_COUNTED
 
 
 @internal
-def _begin(workspace: Any, method: Any, t: float) -> None:
+def _carry(method: Any, a: Any, before: Any, aux: Any, i: int) -> None:
+    """What Newmark's formula carries beside accelerations a, into aux[i] and the three behind it. It is a difference
+    of accelerations in one frame, which those in another frame do not give: it is found anew there."""
+    put_four(aux, i, plus_times(a, plus_times(a, before, -1.0), vec(method.parameters, 8)[ALPHA]))
+
+
+@internal
+def _begin(workspace: Any, method: Any, t: float, predicts: bool) -> None:
     """Choose the frames until t, the end of the step, and put the history that is in them in its place, if there are
     some."""
-    n, spins, spinning = (
-        workspace.n_ext,
-        mat(workspace.spin, workspace.n_attitudes, SPIN_SIZE),
-        ivec(workspace.spinning, workspace.n_attitudes),
-    )
-    count = 0
-    for k in range(workspace.n_attitudes):
-        i = ivec(workspace.attitudes, workspace.n_attitudes)[k]
-        if choose_frame(workspace, method, spins[count], i, t):
-            spinning[count] = i
-            count += 1
-            _share_weights(workspace, i)
+    n, count = workspace.n_ext, choose_frames(workspace, method, t)
     workspace.n_spins = count
     if count == 0:
         return
-    rows, carries = (
-        mat(workspace.turned, method.capacity, workspace.row_length),
-        vec(method.parameters, 8)[CARRIES] != 0.0,
-    )
+    spins, spinning = mat(workspace.spin, count, SPIN_SIZE), ivec(workspace.spinning, count)
+    for k in range(count):
+        _share_weights(workspace, spinning[k], predicts)
+    rows = mat(workspace.turned, method.capacity, workspace.row_length)
     for back in range(ivec(method.ring, RING_SIZE)[1]):
         row, to = history_row(workspace, method, back), rows[row_index(method, back)]
         for i in range(workspace.row_length):
             to[i] = row[i]
-        q, v, a, aux = to[:n], to[n : 2 * n], to[2 * n : 3 * n], to[3 * n : 4 * n]
+        q, v, a = to[:n], to[n : 2 * n], to[2 * n : 3 * n]
         at = history_time(method, back)
         for k in range(count):
+            enter(spins[k], at, q, v, a, spinning[k])
+    if vec(method.parameters, 8)[CARRIES] != 0.0:
+        row, newest = history_row(workspace, method, 0), rows[row_index(method, 0)]
+        for k in range(count):
             i = spinning[k]
-            # what a formula carries turns as accelerations do
-            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
-            enter(spins[k], at, q, v, a, i)
-            if back == 0 and carries:
-                own = times_function(spins[k], rotation_of(spins[k], t - at), carried)
-                put_four(aux, i, plus_times(four_of(a, i), own, 1.0))
+            smooth = rows_available(method) > 1 and four_of(row, 3 * n + i) != four_of(row, 2 * n + i)
+            before = rows[row_index(method, 1)] if smooth else newest
+            _carry(method, four_of(newest, 2 * n + i), four_of(before, 2 * n + i), newest, 3 * n + i)
     method.history, workspace.turned = workspace.turned, method.history
 
 
@@ -85,21 +93,16 @@ def _begin(workspace: Any, method: Any, t: float) -> None:
 def _end(workspace: Any, method: Any, done: bool) -> None:
     """The history in space again, and, where the step is `done`, the workspace's point."""
     n, count = workspace.n_ext, workspace.n_spins
-    workspace.n_spins = 0
     if count == 0:
         return
     method.history, workspace.turned = workspace.turned, method.history
-    if not done:
-        return
-    q, v, a, aux = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.aux, n)
-    for k in range(count):
-        i, spin = ivec(workspace.spinning, count)[k], mat(workspace.spin, count, SPIN_SIZE)[k]
-        if vec(method.parameters, 8)[CARRIES] != 0.0:
-            carried = plus_times(four_of(aux, i), four_of(a, i), -1.0)
-            put_four(aux, i, plus_times(four_of(spin, POINT + 8), carried, 1.0))
-        put_four(q, i, four_of(spin, POINT))
-        put_four(v, i, four_of(spin, POINT + 4))
-        put_four(a, i, four_of(spin, POINT + 8))
+    if done:
+        recall_point(workspace)
+        row = history_row(workspace, method, 0)
+        for k in range(count if vec(method.parameters, 8)[CARRIES] != 0.0 else 0):
+            i = ivec(workspace.spinning, count)[k]
+            _carry(method, four_of(vec(workspace.a, n), i), four_of(row, 2 * n + i), vec(workspace.aux, n), i)
+    workspace.n_spins = 0
 
 
 @internal
@@ -109,37 +112,6 @@ def _fastest(workspace: Any) -> float:
     for k in range(workspace.n_spins):
         rate = max(rate, 2.0 * mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k, RATES + 1])
     return rate
-
-
-@internal
-def _partition_ends(workspace: Any, h: float) -> bool:
-    """Whether the Euler parameter that follows from the norm, or the one that the others follow from (as with a hinge),
-    passes zero within two steps of size h, while another one does not."""
-    dependent = ivec(workspace.dependent, workspace.m_act)
-    for k in range(workspace.n_spins):
-        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
-        count, which = 0, 0
-        for d in range(workspace.m_act):
-            if 0 <= dependent[d] - i < 4:
-                count += 1
-                which += dependent[d] - i
-        p, rate = spin[POINT : POINT + 4], spin[POINT + 4 : POINT + 8]
-        speed = np.sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2] + rate[3] * rate[3])
-        if speed == 0.0 or (count != 1 and count != 3):
-            continue
-        across, along = np.cos(2.0 * h * speed), np.sin(2.0 * h * speed)
-        relied, best = 0.0, 0.0
-        for j in range(4):
-            now, soon = p[j], across * p[j] + along * rate[j] / speed
-            if count == 3:
-                now, soon = rate[j] / speed, across * rate[j] / speed - along * p[j]
-            least = min(abs(now), abs(soon)) if now * soon > 0.0 else 0.0
-            best = max(best, least)
-            if j == (which if count == 1 else 6 - which):
-                relied = least
-        if relied < LEAST_PART and 2.0 * relied < best:
-            return True
-    return False
 
 
 @internal
@@ -161,13 +133,13 @@ def step_in_frames(workspace: Any, method: Any, step: int, h: float) -> int:
     newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
     finer = FINER
     while True:
-        _begin(workspace, method, history_time(method, 0) + h)
+        _begin(workspace, method, history_time(method, 0) + h, vec(method.parameters, 8)[PREDICTS] != 0.0)
         fastest = _fastest(workspace)
         if h * fastest <= FAST * LARGEST_TURN:
             finer = 1.0
         control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
         status = call_step(step, workspace, method, h)
-        if status == OK and _partition_ends(workspace, h):
+        if status == OK and partition_ends(workspace, h):
             vec(workspace.rate, RATE_SIZE)[SENSITIVITY] = np.inf
         _end(workspace, method, status == OK)
         if status == OK or status == REANALYZE or finer == 1.0:
@@ -184,7 +156,7 @@ def select_in_frames(workspace: Any, method: Any, select: int, h: float) -> bool
     """Whether the function at this address proposes other steps k after a step of size h. It sees the same history as
     a step does."""
     choice = vec(method.choice, CHOICE_SIZE)
-    _begin(workspace, method, history_time(method, 0))
+    _begin(workspace, method, history_time(method, 0), True)
     fastest = _fastest(workspace)
     status = call_step(select, workspace, method, h)
     _end(workspace, method, False)

@@ -17,6 +17,7 @@ from ..assembly.evaluate import evaluate_power, evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.accelerations import solve_accelerations
+from ..stage.corotating import enter_frame, leave_frame
 from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
@@ -113,6 +114,7 @@ def _end(workspace: Any, method: Any, t: float, h: float) -> int:
             q[l] = old[l] + h * (old[n + l] + h * move_q)
             v[l] = old[n + l] + h * move_v
         _extrapolate_to_end(workspace, method)
+        leave_frame(workspace)
         evaluate_residuals(workspace)
         status = inner_loop(workspace, workspace.lu_d, 1.0, np.inf)
         if status == OK:
@@ -124,6 +126,7 @@ def _end(workspace: Any, method: Any, t: float, h: float) -> int:
             work += table[VECTORS, B + i] * rows[i, 2 * n + l]
         v[l] = old[n + l] + h * work
     evaluate_power(workspace)
+    enter_frame(workspace)
     return status
 
 

@@ -49,9 +49,6 @@ class Option:
 
 FINEST_WORKING = 1e-12
 """Tolerances of a step are not made finer than that: the error estimates of short steps are not far above rounding."""
-MOST_SUMMED = 100.0
-"""Number of steps whose errors are counted. More are taken only with tolerances that are too fine for the order, and
-would become several times as many."""
 
 
 @dataclass(frozen=True)
@@ -82,11 +79,11 @@ class Formula:
     """First content of the method record's `weights`, row by row."""
     carries: bool = False
     """True if it carries accelerations of its own from step to step, beside the true ones."""
-    turns: bool = True
-    """True if attitudes in space are integrated in turning frames (`frames.py`)."""
     sums_up: float = 0.0
     """Order p (2 or more) of a formula that is judged by its own error of a step; 0: by that of a formula of one order
     less, which it is better than, or not at all (`working_tolerance`)."""
+    embedded: bool = False
+    """True if its error is the difference to an embedded formula, in all coordinates whether they depend or not."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 
@@ -101,7 +98,7 @@ class Formula:
         """
         if self.sums_up < 2.0:
             return rtol
-        return max(min(rtol, FINEST_WORKING), rtol * max(rtol ** (1.0 / self.sums_up), 1.0 / MOST_SUMMED))
+        return max(min(rtol, FINEST_WORKING), rtol * rtol ** (1.0 / self.sums_up))
 
 
 @dataclass(frozen=True)

@@ -67,8 +67,6 @@ def newmark_step(workspace: Any, method: Any, h: float) -> int:
     v, aux = vec(workspace.v, n), vec(workspace.aux, n)
     for i in range(n - workspace.n_work, n):
         v[i] = v_star[i] + c_v * a[i]
-    for i in range(n):
-        aux[i] = (1.0 + alpha) * a[i] - alpha * row[2 * n + i]
     error = vec(workspace.rhs, workspace.n)
     factor = (beta - 1.0 / (6.0 * (1.0 + alpha))) * h * h
     for i in range(workspace.n):
@@ -76,6 +74,8 @@ def newmark_step(workspace: Any, method: Any, h: float) -> int:
     norm = weighted_norm(error, vec(workspace.weight_q, n), workspace.n)
     if parameters[ESTIMATE] != 0.0:
         norm = filtered_velocity_error(workspace, method, h, norm)
+    for i in range(n):
+        aux[i] = (1.0 + alpha) * a[i] - alpha * row[2 * n + i]
     vec(method.error, 2)[0] = norm
     vec(method.error, 2)[1] = 2.0 if abs(gamma + alpha - 0.5) < 1e-12 else 1.0
     return OK

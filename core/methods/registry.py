@@ -70,14 +70,12 @@ FINE = 1e-3
 
 def _irk(name: str) -> Formula:
     if name == "sdirk4":
-        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE, turns=False)
+        return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE, embedded=True)
     tableau = TABLEAUS[name]
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)
-    loops, weights = ("newton", "simple"), tableau.data()
-    return Formula(
-        irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=weights, outer_loops=loops, turns=False
-    )  # fmt: skip
+    loops = ("newton", "simple")
+    return Formula(irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops)
 
 
 def _newmark(alpha: float, beta: float, gamma: float) -> Formula:

@@ -14,6 +14,7 @@ import numpy as np
 from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import internal
 from ..compiled.views import mat, vec
+from ..stage.corotating import use_formula
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import OK, call_stage
 from .history import history_row, history_time
@@ -70,6 +71,7 @@ def sdirk_from_base(workspace: Any, t: float, h: float) -> Any:
             return status, 0.0
         if workspace.n_spins == 0:
             evaluate_power(workspace)
+        use_formula(workspace, c_v * c_v, c_v)
         for i in range(first_work, n):
             v[i] = v_star[i] + c_v * a[i]
         for i in range(n):

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..compiled.jit import inlined, internal
 from ..compiled.views import mat, vec
+from ..stage.corotating import leave_frame
 from ..state.workspace_records import COUPLED_STAGES
 from .multistep import weight_rows
 
@@ -31,7 +32,7 @@ def stage_rows(workspace: Any) -> Any:
 
 @internal
 def load_stage(workspace: Any, method: Any, i: int, t: float, h: float) -> None:
-    """Stage i becomes the current point of the workspace."""
+    """Stage i becomes the current point of the workspace, in space."""
     n, row = workspace.n_ext, stage_rows(workspace)[i]
     q, v, a, lam = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), vec(workspace.lam, workspace.m_ext)
     for l in range(workspace.n):
@@ -41,6 +42,7 @@ def load_stage(workspace: Any, method: Any, i: int, t: float, h: float) -> None:
     for l in range(workspace.m_ext):
         lam[l] = row[4 * n + l]
     vec(workspace.t, 1)[0] = t + weight_rows(method)[VECTORS, NODES + i] * h
+    leave_frame(workspace)
 
 
 @inlined

@@ -20,7 +20,7 @@ from ..assembly.evaluate import evaluate_constraints, evaluate_residuals, evalua
 from ..assembly.redundant_reactions import factor_equations, solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
-from ..stage.corotating import enter_frame, leave_frame
+from ..stage.corotating import enter_frame, recall_point
 from ..stage.solver import weighted_norm
 from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
 from .history import history_row, history_time
@@ -149,12 +149,15 @@ def filtered_velocity_error(workspace: Any, method: Any, h: float, norm: float) 
     """
     norm = max(norm, _find_error(workspace, method, h, 0.0))
     rhs, weight_v = vec(workspace.rhs, workspace.n), vec(workspace.weight_v, workspace.n_ext)
-    if weighted_norm(rhs, weight_v, workspace.n) <= norm:
+    most = weighted_norm(rhs, weight_v, workspace.n)
+    if most <= norm:
         return norm
-    leave_frame(workspace)
+    recall_point(workspace)
     _filter(workspace, h, 1 if rows_available(method) < SETTLED else 2)
     enter_frame(workspace)
-    return max(norm, weighted_norm(rhs, weight_v, workspace.n))
+    found = weighted_norm(rhs, weight_v, workspace.n)
+    # the filter spreads what is not counted (`frames.py`) to what is
+    return max(norm, min(found, most) if workspace.n_spins > 0 else found)
 
 
 @internal

@@ -6,12 +6,14 @@ Who drives a run without Python calls it; where something has to be built that i
 
 from typing import Any
 
+from ..assembly.condition_probe import set_probe
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..assembly.redundant_reactions import analyze_equations
 from ..compiled.jit import compiled
 from ..compiled.views import vec
 from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
 from ..linalg.record import WANT_ROOM
+from ..methods.frame_partition import PREFERENCE, prefer_attitudes
 from ..methods.history import recall
 from ..state.run_records import CLOCK_SIZE, PUSH_STEP, STEP_SIZE
 from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
@@ -26,7 +28,10 @@ def repair_now(drive: Any) -> int:
     c_v, condition = rate[FACTOR_CV], rate[CONDITION]
     recall(workspace, method, 0)
     evaluate_residuals(workspace)
+    prefer_attitudes(workspace, method, PREFERENCE)
     status = call_part(instant.use_modes, instant, drive, workspace, method)
+    if prefer_attitudes(workspace, method, 1.0 / PREFERENCE):
+        set_probe(workspace)
     if status != SETTLED:
         return status
     rate[CHOICE_CONDITION] = condition

@@ -2,11 +2,13 @@
 
 from typing import TYPE_CHECKING
 
+from ..assembly.condition_probe import set_probe
 from ..assembly.evaluate import evaluate_tangent
 from ..assembly.partition import prepare
 from ..assembly.redundancy import choose_rows
 from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
+from ..methods.frame_partition import PREFERENCE, prefer_attitudes
 from ..methods.history import recall
 from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV
 
@@ -28,7 +30,7 @@ def repair(sim: "Simulation") -> bool:
     condition = float(rate[CONDITION])
     try:
         changed = choose_rows(sim.workspace)
-        prepare(sim.workspace)
+        _prepare_for_frames(sim)
         if changed:
             _move_multipliers(sim)
         else:
@@ -42,6 +44,17 @@ def repair(sim: "Simulation") -> bool:
             loop="inner",
         ) from error
     return changed
+
+
+def _prepare_for_frames(sim: "Simulation") -> None:
+    """A partition in which attitudes in turning frames are independent, if it can be."""
+    workspace, method = sim.workspace, sim._method.record
+    prefer_attitudes(workspace.record, method, PREFERENCE)
+    try:
+        prepare(workspace)
+    finally:
+        if prefer_attitudes(workspace.record, method, 1.0 / PREFERENCE):
+            set_probe(workspace.record)
 
 
 def _order_as_in_stages(sim: "Simulation", c_v: float) -> None:

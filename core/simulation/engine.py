@@ -179,8 +179,7 @@ class Engine(ContactSide):
         loop = OUTER_LOOPS[name]
         self.outer = name
         self.workspace.make_basis(loop.basis_rows)
-        turns = self.formula.turns and self.formula.stage is None
-        corotating = address_of(solve_spinning_stage, STAGE_SIGNATURE) if turns else 0
+        corotating = address_of(solve_spinning_stage, STAGE_SIGNATURE) if self.formula.stage is None else 0
         self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE), corotating)
         control = self.workspace.arrays["control"]
         control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")

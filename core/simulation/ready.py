@@ -22,6 +22,7 @@ from ..linalg.analyze import follow
 from ..linalg.record import FACTOR_SIGNATURE, LU_TYPE, SOLVE_SIGNATURE
 from ..linalg.row_pivoting import FEW_ENTRIES, make_elimination_ready
 from ..linalg.solve import factor, solve
+from ..methods.frame_partition import prefer_attitudes
 from ..methods.history import recall, restart
 from ..stage import OUTER_LOOPS
 from ..stage.accelerations import solve_accelerations
@@ -53,6 +54,7 @@ _CALLED: tuple[tuple[Any, tuple[Any, ...]], ...] = (
     (write_sample, (_WORKSPACE, _VECTOR)),
     (recall, (_WORKSPACE, _METHOD, _WHOLE)),
     (restart, (_WORKSPACE, _METHOD)),
+    (prefer_attitudes, (_WORKSPACE, _METHOD, _REAL)),
     (remember, (_WORKSPACE, _LOOP)),
     (set_weights_at, (_WORKSPACE, _METHOD)),
     (trial_step, (_WORKSPACE, _METHOD, _LOOP, _REAL)),

@@ -18,7 +18,17 @@ from ..events.progress import GUARD_SIZE
 from ..methods.order_selection import LEAST_K, MOST_K, select_stable_k
 from ..methods.registry import FINE_STARTER, STARTER, Formula
 from ..stage.accelerations import solve_accelerations
-from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, METHOD, RING_SIZE, WEIGHTS_WIDTH, K, step_address
+from ..state.method_records import (
+    CARRIES,
+    CHOICE_SIZE,
+    ESTIMATE,
+    METHOD,
+    PREDICTS,
+    RING_SIZE,
+    WEIGHTS_WIDTH,
+    K,
+    step_address,
+)
 from ..state.run_records import (
     A2,
     ACCELERATIONS_SIGNATURE,
@@ -71,6 +81,8 @@ def build_method(formula: Formula, settings: Settings, has_waves: bool, state: N
     arrays = {name: state[f"method_{name}"][0] for name in names}
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
+    if formula.stage is None:
+        parameters[PREDICTS] = float(formula.sums_up > 0.0 or formula.embedded)
     parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
     if formula.select is select_stable_k and not has_waves:
         parameters[LEAST_K] = parameters[MOST_K]

@@ -15,12 +15,18 @@ A turn of four dimensions is one in two planes. With the unit quaternions e of n
 W x = i (w+ x+ + w- x-) where i multiplies by e from the left, w+- = |n| -+ |s|. So every function of W is two complex
 numbers g+-, and g x = g+ x+ + g- x-.
 
-A stage u = q* + c_q u'', u' = v* + c_v u'' becomes one of p and its derivatives at the stage's time, where R q*, R v*
+A stage z = q* + c_q z'', z' = v* + c_v z'' becomes one of p and its derivatives at the stage's time, where R q*, R v*
 stand for q*, v* and with k = 2 W v* + W^2 q*, D = (1 + 2 c_v W + c_q W^2)^-1
 
     p = (q* - c_q D k) + c_q D p''    p' = (v* + W q* - (c_v + c_q W) D k) + (c_v + c_q W) D p''
 
 D differs from 1 by the angle of a step: the matrices of the outer loop need not know it.
+
+The constraints give one component of p at least, which is another direction of u at each time. So a stage of a
+Runge-Kutta formula has two points: z of the formula, all four components of it, and (u, u', u'') of p on the
+constraints, at which the forces are. Other stages see z, z', z''. That is the formula for z'' = R^-1 (p''(u, u', t) -
+...), a smooth equation in all four components, which the motion solves: the order stays. Of points on the constraints
+it would be none of one equation. Formulas with one time see these: their error estimates then know what constraints do.
 """
 
 from typing import Any
@@ -132,16 +138,35 @@ def leave(spin: Any, t: float, q: Any, v: Any, a: Any, i: int) -> None:
 
 
 @internal
-def enter_frame(workspace: Any) -> None:
-    """The workspace's point in the turning frame; that in space is remembered."""
-    n, t = workspace.n_ext, vec(workspace.t, 1)[0]
-    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+def _remember(workspace: Any) -> None:
+    """The workspace's point, which is in space."""
+    n = workspace.n_ext
     for k in range(workspace.n_spins):
         i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
-        put_four(spin, POINT, four_of(q, i))
-        put_four(spin, POINT + 4, four_of(v, i))
-        put_four(spin, POINT + 8, four_of(a, i))
-        enter(spin, t, q, v, a, i)
+        put_four(spin, POINT, four_of(vec(workspace.q, n), i))
+        put_four(spin, POINT + 4, four_of(vec(workspace.v, n), i))
+        put_four(spin, POINT + 8, four_of(vec(workspace.a, n), i))
+
+
+@internal
+def recall_point(workspace: Any) -> None:
+    """The point in space that was remembered becomes that of the workspace."""
+    n = workspace.n_ext
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        put_four(vec(workspace.q, n), i, four_of(spin, POINT))
+        put_four(vec(workspace.v, n), i, four_of(spin, POINT + 4))
+        put_four(vec(workspace.a, n), i, four_of(spin, POINT + 8))
+
+
+@internal
+def enter_frame(workspace: Any) -> None:
+    """The workspace's point in the turning frame; that in space is remembered."""
+    _remember(workspace)
+    n, t = workspace.n_ext, vec(workspace.t, 1)[0]
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        enter(spin, t, vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), i)
 
 
 @internal
@@ -198,13 +223,31 @@ def solve_spinning_stage(workspace: Any, t: float, c_q: float, c_v: float) -> in
     for k in range(workspace.n_spins):
         _begin_stage(workspace, spins[k], spinning[k], t, c_q, c_v)
     status = call_stage(workspace.plain_stage, workspace, t, c_q, c_v)
-    for k in range(workspace.n_spins):
-        put_four(vec(workspace.q_star, n), spinning[k], four_of(spins[k], STARS))
-        put_four(vec(workspace.v_star, n), spinning[k], four_of(spins[k], STARS + 4))
     if status == OK and workspace.n_spins > 0:
         evaluate_power(workspace)
         enter_frame(workspace)
+    for k in range(workspace.n_spins):
+        put_four(vec(workspace.q_star, n), spinning[k], four_of(spins[k], STARS))
+        put_four(vec(workspace.v_star, n), spinning[k], four_of(spins[k], STARS + 4))
     return status
+
+
+@internal
+def use_formula(workspace: Any, c_q: float, c_v: float) -> None:
+    """z, z' and z'' in place of the stage's point on the constraints: p'' is that of both."""
+    n = workspace.n_ext
+    q, v, a = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n)
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        q_star, v_star = four_of(vec(workspace.q_star, n), i), four_of(vec(workspace.v_star, n), i)
+        off = times_rate(spin, plus_times(four_of(q, i), q_star, -1.0))
+        off = plus_times(off, plus_times(four_of(v, i), v_star, -1.0), 2.0)
+        whole = plus_times(four_of(a, i), times_rate(spin, off), 1.0)
+        # D of it
+        whole = plus_times(whole, times_function(spin, four_of(spin, OF_Q), whole), 1.0 / c_q)
+        put_four(q, i, plus_times(q_star, whole, c_q))
+        put_four(v, i, plus_times(v_star, whole, c_v))
+        put_four(a, i, whole)
 
 
 @internal
@@ -219,3 +262,15 @@ def add_in_frame(workspace: Any, x: Any) -> None:
         of_v = times_function(spin, four_of(spin, OF_V), increment)
         put_four(q, i, plus_times(four_of(q, i), of_q, 1.0))
         put_four(v, i, plus_times(four_of(v, i), of_v, 1.0))
+
+
+@internal
+def to_formula(workspace: Any, row: Any, increment: Any) -> None:
+    """Of a coupled stage whose z and z' are in `row`: these in place of the workspace's point on the constraints, and
+    increments of accelerations at its time in the turning frames."""
+    n, t = workspace.n_ext, vec(workspace.t, 1)[0]
+    for k in range(workspace.n_spins):
+        i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
+        put_four(vec(workspace.q, n), i, four_of(row, i))
+        put_four(vec(workspace.v, n), i, four_of(row, n + i))
+        put_four(increment, i, times_function(spin, rotation_of(spin, spin[ANCHOR] - t), four_of(increment, i)))

@@ -16,7 +16,7 @@ METHOD = np.dtype(
             "history",    # (capacity, row_length) float64, a ring
             "times",      # (capacity,) float64
             "ring",       # (RING_SIZE,) int64: position of the newest row, number of rows, points of a long step
-            "parameters", # (8,) float64: alpha, beta, gamma ...; the last two are CARRIES, ESTIMATE
+            "parameters", # (8,) float64: alpha, beta, gamma ...; the last three are PREDICTS, CARRIES, ESTIMATE
             "weights",    # (8, WEIGHTS_WIDTH) float64: nodes and coefficients of the present grid; a tableau
             "error",      # (2,) float64: error norm of the last step, order of its estimate
             "choice",     # (CHOICE_SIZE,) float64: steps k of a multistep formula, and what order selection proposes
@@ -39,6 +39,8 @@ NEXT_K = 1  # k that the next step shall take; 0: the same
 NEXT_NORM = 2  # error norm that it would have had
 CHOICE_SIZE = 3
 # columns of `parameters`
+PREDICTS = 5
+"""1: its error is estimated by the difference from what the history predicts."""
 CARRIES = 6
 """1: the formula carries accelerations of its own, `aux`, from step to step."""
 ESTIMATE = 7

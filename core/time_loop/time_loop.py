@@ -14,7 +14,7 @@ from ..methods.multistep import rows_available
 from ..rounding import CONTRADICTION, COORDINATE_DIFFERENCES, LARGEST, NO_STEP
 from ..stage.inner import STRAINED
 from ..stage.matrices import CHOICE_GROWTH
-from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K, call_step
+from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 from ..state.run_records import (
     BREAK_TIME,
     CHUNK,
@@ -137,10 +137,7 @@ def trial_step(workspace: Any, method: Any, loop: Any, h: float) -> int:
     set_weights(workspace, method)
     rate = vec(workspace.rate, RATE_SIZE)
     rate[WORST_CONDITION] = rate[CONDITION]
-    if starting:
-        status = call_step(loop.starter, workspace, method, h)
-    else:
-        status = step_in_frames(workspace, method, loop.step, h)
+    status = step_in_frames(workspace, method, loop.starter if starting else loop.step, h)
     if status == OK and not all_finite(workspace):
         return NOT_FINITE
     return status

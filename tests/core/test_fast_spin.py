@@ -18,7 +18,13 @@ from tlismni.core import (
 ACROSS = EulerParameters(values=(0.5**0.5, -(0.5**0.5), 0.0, 0.0))
 """The z axis of a marker along the y axis."""
 TURNS = 100
-METHODS = ("ebdf", "mebdf", "bdf", "newmark", "hht", "park", "adams", "trapezoidal")
+METHODS = ("ebdf", "mebdf", "bdf", "newmark", "hht", "park", "adams", "trapezoidal", "irk")
+FORMULAS = [(method, {}) for method in METHODS] + [
+    ("irk", {"tableau": tableau}) for tableau in ("gauss2", "gauss3", "sdirk4")
+]
+every_formula = pytest.mark.parametrize(
+    "method, options", FORMULAS, ids=[options.get("tableau", method) for method, options in FORMULAS]
+)
 
 
 def rate_in_space(p: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -36,38 +42,73 @@ def momentum_in_space(body: RigidBody3D, p: np.ndarray, rate: np.ndarray) -> np.
 
 
 def spin(body: RigidBody3D, joints: list[Revolute3D], speed: float, method: str, **options: object) -> tuple:
-    """By how much energy and angular velocity at the end differ from those after three turns, relative, and steps a
-    turn. The start, by a Runge-Kutta formula in space, errs by parts of the tolerance."""
+    """By how much energy and angular velocity at the end differ from those at the start, relative, and steps a turn."""
     model = Model(gravity=(0.0, 0.0, 0.0), bodies=[body], joints=joints)
     result = simulate(model, TURNS * 2.0 * np.pi / speed, method=method, **options)
     energy = result["energy.kinetic"]
-    begun = int(np.searchsorted(result.t, 0.03 * result.t[-1]))
-    assert abs(energy[begun] / energy[0] - 1.0) < 1e-6
-    before, after = (rate_in_space(result.q[k, 3:7], result.v[k, 3:7]) for k in (begun, -1))
+    before, after = (rate_in_space(result.q[k, 3:7], result.v[k, 3:7]) for k in (0, -1))
     off = np.linalg.norm(after - before) / np.linalg.norm(before)
-    return energy[-1] / energy[begun] - 1.0, off, result.stats["steps"] / TURNS
+    return energy[-1] / energy[0] - 1.0, off, result.stats["steps"] / TURNS
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_free_body_that_spins_about_a_principal_axis_keeps_energy_and_momentum(method: str) -> None:
+@every_formula
+def test_a_free_body_that_spins_about_a_principal_axis_keeps_energy_and_momentum(method: str, options: dict) -> None:
+    # 1e-11 in 100 turns is 1e-9 in 10 000
     body = RigidBody3D(name="body", mass=1.0, inertia=(0.1, 0.2, 0.25), angular_velocity=(0.0, 0.0, 200.0))
-    gain, off, steps = spin(body, [], 200.0, method)
-    assert abs(gain) < 1e-10
-    assert off < 1e-10
-    assert steps <= 22.0  # the start included
+    gain, off, steps = spin(body, [], 200.0, method, **options)
+    assert abs(gain) < 1e-11
+    assert off < 1e-11
+    assert steps <= 20.0
 
 
-@pytest.mark.parametrize("method", ("ebdf", "bdf", "hht"))
-def test_a_rotor_on_a_hinge_keeps_its_speed(method: str) -> None:
+@pytest.mark.parametrize(
+    "method, options", [("ebdf", {}), ("bdf", {}), ("hht", {}), *FORMULAS[METHODS.index("irk") :]], ids=str
+)
+def test_a_rotor_on_a_hinge_keeps_its_speed(method: str, options: dict) -> None:
     body = RigidBody3D(name="rotor", mass=2.0, inertia=(0.1, 0.2, 0.25), angular_velocity=(0.0, 0.0, -30.0))
-    gain, off, steps = spin(body, [Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="rotor"))], 30.0, method)
-    assert abs(gain) < 1e-10
-    assert off < 1e-10
-    assert steps <= 22.0  # the start included
+    hinge = Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="rotor"))
+    gain, off, steps = spin(body, [hinge], 30.0, method, **options)
+    assert abs(gain) < 1e-11
+    assert off < 1e-11
+    assert steps <= 20.0
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_reactions_of_a_rotor_on_a_hinge_are_as_exact_as_its_motion(method: str) -> None:
+@every_formula
+def test_a_rotor_with_its_centre_of_mass_off_the_axis_keeps_its_speed(method: str, options: dict) -> None:
+    # the start has one of its positions as the independent coordinate: the attitude is, from the second step on
+    speed = 30.0
+    rotor = RigidBody3D(
+        name="rotor", mass=2.0, inertia=(0.1, 0.2, 0.25), position=(0.1, 0.0, 0.0), velocity=(0.0, 0.1 * speed, 0.0),
+        angular_velocity=(0.0, 0.0, speed),
+    )  # fmt: skip
+    hinge = Revolute3D(name="hinge", a=Marker3D(), b=Marker3D(body="rotor", point=(-0.1, 0.0, 0.0)))
+    model = Model(gravity=(0.0, 0.0, 0.0), bodies=[rotor], joints=[hinge])
+    result = simulate(model, TURNS * 2.0 * np.pi / speed, method=method, **options)
+    assert result.stats["steps"] / TURNS <= 22.0
+    energy = result["energy.kinetic"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-6
+    begun = int(np.searchsorted(result.t, 0.1 * result.t[-1]))
+    assert abs(energy[-1] / energy[begun] - 1.0) < 1e-10
+    pull = np.hypot(result["hinge.force_x"], result["hinge.force_y"])[begun:]
+    assert pull == pytest.approx(2.0 * 0.1 * speed**2, rel=1e-6)
+
+
+@pytest.mark.full
+@every_formula
+def test_a_body_keeps_energy_and_momentum_over_ten_thousand_turns(method: str, options: dict) -> None:
+    body = RigidBody3D(name="body", mass=1.0, inertia=(0.1, 0.2, 0.25), angular_velocity=(0.0, 0.0, 200.0))
+    model = Model(gravity=(0.0, 0.0, 0.0), bodies=[body])
+    result = simulate(model, 1e4 * 2.0 * np.pi / 200.0, method=method, record=False, **options)
+    before, after = (momentum_in_space(body, result.q[k, 3:7], result.v[k, 3:7]) for k in (0, -1))
+    assert np.linalg.norm(after - before) < 1e-9 * np.linalg.norm(before)
+    rate = rate_in_space(result.q[-1, 3:7], result.v[-1, 3:7])
+    assert rate @ after == pytest.approx(200.0**2 * 0.25, rel=1e-9)
+    assert result.stats["steps"] <= 20e4
+
+
+@pytest.mark.parametrize("rtol", (1e-6, 1e-10))
+@every_formula
+def test_reactions_of_a_rotor_on_a_hinge_are_as_exact_as_its_motion(method: str, options: dict, rtol: float) -> None:
     """A torque across the axis, which stands in space: the hinge carries just that, whatever the attitude is.
 
     In turning frames coordinates are predicted to rounding, and tell nothing of the matrices that reactions take.
@@ -78,10 +119,13 @@ def test_reactions_of_a_rotor_on_a_hinge_are_as_exact_as_its_motion(method: str)
         AppliedForce3D(name="push", marker=Marker3D(body="top"), force_x=Constant(value=3.0)),
         AppliedTorque3D(name="tilt", marker=Marker3D(body="top"), torque_x=Constant(value=0.7)),
     ]
-    result = simulate(Model(gravity=(0.0, 0.0, 0.0), bodies=[top], joints=[hinge], forces=loads), 2.0, method=method)
+    model = Model(gravity=(0.0, 0.0, 0.0), bodies=[top], joints=[hinge], forces=loads)
+    result = simulate(model, 2.0, method=method, rtol=rtol, **options)
     assert result.stats["steps"] < 100
-    assert result["hinge.force_x"] == pytest.approx(-3.0, rel=1e-7)
-    assert result["hinge.torque_x"] == pytest.approx(-0.7, rel=1e-7)
+    begun = result.t > 0.5
+    for channel, load in (("hinge.force_x", -3.0), ("hinge.torque_x", -0.7)):
+        assert result[channel] == pytest.approx(load, rel=1e-7)
+        assert result[channel][begun] == pytest.approx(load, rel=1e-9)
 
 
 @pytest.mark.sampled(6)
@@ -94,28 +138,39 @@ def test_balls_that_spin_about_any_axis_at_any_speed_keep_it(seed: int) -> None:
     body = RigidBody3D(
         name="ball", mass=1.0, inertia=(0.4, 0.4, 0.4), velocity=tuple(rng.normal(size=3)), angular_velocity=tuple(w)
     )
-    method = METHODS[seed % len(METHODS)]
-    gain, off, steps = spin(body, [], speed, method)
-    assert abs(off) < 1e-10
-    assert abs(gain) < 1e-10
-    assert steps <= 22.0  # the start included
+    method, options = FORMULAS[seed % len(FORMULAS)]
+    gain, off, steps = spin(body, [], speed, method, **options)
+    assert abs(off) < 1e-11
+    assert abs(gain) < 1e-11
+    assert steps <= 20.0
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_symmetrical_body_that_nutates_keeps_energy_and_momentum(method: str) -> None:
+@every_formula
+def test_a_symmetrical_body_that_nutates_keeps_energy_and_momentum(method: str, options: dict) -> None:
     # its angular velocity turns about the angular momentum in space and about the axis in the body: regular precession
     body = RigidBody3D(name="top", mass=1.0, inertia=(0.15, 0.15, 0.25), angular_velocity=(60.0, -20.0, 180.0))
     model = Model(gravity=(0.0, 0.0, 0.0), bodies=[body])
-    result = simulate(model, 1.0, method=method)
+    result = simulate(model, 1.0, method=method, **options)
     energy = result["energy.kinetic"]
-    assert np.abs(energy / energy[0] - 1.0).max() < 1e-6
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-8
     begun = int(np.searchsorted(result.t, 0.05))
     assert abs(energy[-1] / energy[begun] - 1.0) < 1e-11
     momenta = [momentum_in_space(body, result.q[k, 3:7], result.v[k, 3:7]) for k in (begun, -1)]
     assert np.linalg.norm(momenta[1] - momenta[0]) < 1e-11 * np.linalg.norm(momenta[0])
 
 
-@pytest.mark.parametrize("method, most", (("ebdf", 2e-5), ("bdf", 5e-3), ("hht", 2e-3)))
+@pytest.mark.parametrize("rtol", (1e-7, 1e-8, 1e-9))
+@pytest.mark.parametrize("method", ("newmark", "hht", "trapezoidal", "park"))
+def test_formulas_of_order_two_find_the_frame_with_fine_tolerances_too(method: str, rtol: float) -> None:
+    # their steps are so short first that errors in space look negligible; what they carry belongs to a frame
+    body = RigidBody3D(name="top", mass=1.0, inertia=(0.15, 0.15, 0.25), angular_velocity=(60.0, -20.0, 180.0))
+    result = simulate(Model(gravity=(0.0, 0.0, 0.0), bodies=[body]), 0.3, method=method, rtol=rtol)
+    assert result.stats["steps"] < 600
+    energy = result["energy.kinetic"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-2 * rtol
+
+
+@pytest.mark.parametrize("method, most", (("ebdf", 2e-5), ("bdf", 5e-3), ("hht", 2e-3), ("irk", 2e-5)))
 @pytest.mark.parametrize("seed", range(3))
 def test_a_body_that_tumbles_is_no_worse_than_its_tolerance(method: str, most: float, seed: int) -> None:
     # frames that turn with it would be rougher than space: ten times these errors
@@ -132,10 +187,10 @@ def test_a_body_that_tumbles_is_no_worse_than_its_tolerance(method: str, most: f
     assert np.linalg.norm(momenta[1] - momenta[0]) < most * np.linalg.norm(momenta[0])
 
 
-@pytest.mark.parametrize("outer", ("simple", "jfnk"))
-def test_the_other_outer_loops_keep_it_too(outer: str) -> None:
+@pytest.mark.parametrize("outer, method", (("simple", "ebdf"), ("jfnk", "ebdf"), ("simple", "irk")))
+def test_the_other_outer_loops_keep_it_too(outer: str, method: str) -> None:
     body = RigidBody3D(name="body", mass=1.0, inertia=(0.1, 0.1, 0.1), angular_velocity=(30.0, -20.0, 5.0))
-    gain, off, _ = spin(body, [], 36.0, "ebdf", outer=outer)
+    gain, off, _ = spin(body, [], 36.0, method, outer=outer)
     assert abs(gain) < 1e-8
     assert off < 1e-8
 
