@@ -256,7 +256,7 @@ def _check_clock(clock: NDArray[np.float64], own: NDArray[np.float64]) -> None:
     step = float(clock[STEP_SIZE])
     _need("clock", 0.0 < step < math.inf, f"has a step of {step!r} s")
     _need("clock", (clock[list(_NOT_NEGATIVE)] >= 0.0).all(), "has counts below zero")
-    known = halvings.is_integer() and halvings <= MOST_HALVINGS
+    known = halvings.is_integer() and halvings <= (MOST_HALVINGS if own[FIXED_STEP] > 0.0 else 0)
     _need("clock", known, f"has a fixed step halved {halvings!r} times")
     whole, expected = (float(x[FIXED_STEP] * 2.0 ** x[HALVINGS]) for x in (clock, own))
     _need("clock", whole == expected, f"has a fixed step of {whole!r} s")

@@ -185,7 +185,7 @@ def test_what_is_out_of_range_is_refused():
 
 
 def test_a_past_that_cannot_be_is_refused():
-    assert forge_past("a chain") == 11
+    assert forge_past("a chain") == 10
 
 
 @pytest.mark.sampled(1)
