@@ -52,7 +52,7 @@ from ..linalg.analyze import ANALYZE_SIGNATURE, analyze, analyze_sparse, follow,
 from ..linalg.solve import _no_solution, _not_analysed, factor, solve
 from ..methods import adams, frame_partition, history, order_selection, park
 from ..model import angular_velocity, derived, marker_channels2d, marker_channels3d
-from ..recovery import compiled_repartition
+from ..recovery import compiled_repartition, policy
 from ..simulation import begin_now, exchange, normal_form, read_channels, slopes
 from ..simulation.begin_record import BEGIN
 from ..stage import accelerations, joints
@@ -94,6 +94,7 @@ def _called_by_address() -> Iterator[tuple[Any, Any]]:
     yield drive.pass_breakpoint, run_records.SETTLE_SIGNATURE
     yield drive.push_step, run_records.SETTLE_SIGNATURE
     yield drive.locate_now, run_records.LOCATE_SIGNATURE
+    yield policy.recover, run_records.RECOVER_SIGNATURE
     yield time_loop.run, run_records.RUN_SIGNATURE
     yield time_loop.trial_step, run_records.TRIAL_SIGNATURE
     yield time_loop.accept, run_records.ACCEPT_SIGNATURE

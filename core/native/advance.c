@@ -1,4 +1,4 @@
-/* The way on: what `exchange` and `advance.py` do in Python, as far as it takes none. */
+/* The way on: what `exchange`, `advance.py` and `answers.py` do in Python, as far as it takes none. */
 
 #include "codes.h"
 #include "image.h"
@@ -19,11 +19,11 @@ static int64_t call(tlismni_run *run, int which, int64_t place) {
     return status == 0 ? result : RAISED;
 }
 
-/* The same of a function of the record of `drive` and a flag. */
-static int64_t call_drive(tlismni_run *run, int which, bool flag) {
+/* `drive`, to the goal or, to `hold`, until events are pending. */
+static int64_t go(tlismni_run *run, bool hold) {
     int64_t result = 0;
     void *raised = NULL;
-    int32_t status = ((OfDrive)run->model->functions[which])(&result, &raised, run->own + run->model->places.drive, flag);
+    int32_t status = ((OfDrive)run->model->functions[DRIVE])(&result, &raised, run->own + run->model->places.drive, hold);
     return status == 0 ? result : RAISED;
 }
 
@@ -59,98 +59,58 @@ int64_t advance_used(const tlismni_run *run) {
     return WHOLES(run, counters)[STEPS] + WHOLES(run, counts)[HANDLED];
 }
 
-/* A smaller step after a failure; false if it cannot be smaller (`advance.py`). */
-static bool shrink(tlismni_run *run) {
-    double *clock = REALS(run, clock), h = 0.25 * clock[TRIAL_STEP];
-    double brief = 1e-6 * (1.0 / REALS(run, control)[RATE_SCALE]);
-    double least = run->model->numbers.shortest * fmax(fabs(tlismni_computed(run)), brief);
-    clock[STEP_SIZE] = h;
-    return h > least;
-}
-
-/* New partition and pivots. Redundant rows that are left out stay so: those of the image, all along. */
+/* Other pivots where the policy asks for them: redundant rows that are left out stay so, those of the image, all along. */
 static tlismni_status repair(tlismni_run *run) {
-    int64_t status = call(run, REPAIR, run->model->places.drive);
-    return status == SETTLED ? TLISMNI_OK : (tlismni_status)(status < RAISED ? SETTLING + status : status);
-}
-
-/* Go on in steps of impulses where no other step can be made; `code` if there are none. */
-static tlismni_status by_impulses(tlismni_run *run, int64_t code) {
-    bool pushes = call(run, GO_BY_IMPULSES, run->model->places.drive) == SETTLED;
-    return pushes ? TLISMNI_OK : (tlismni_status)code;
-}
-
-/* Locate in the last step the event that could not be located because a trial failed (`locating.py`). */
-static tlismni_status locate_again(tlismni_run *run) {
-    for (int attempt = 0; attempt < 3; attempt++) {
-        tlismni_status status = repair(run);
-        if (status != TLISMNI_OK) {
-            return status;
-        }
-        int64_t code = call_drive(run, LOCATE, true);
-        if (code == TLISMNI_OK || code == RAISED) {
-            return (tlismni_status)code;
-        }
+    int64_t *counts = WHOLES(run, counts), status = call(run, REPAIR, run->model->places.drive);
+    if (status == WANTS_ROOM || status == WANT_MEMORY || status >= RAISED) {
+        return (tlismni_status)(status < RAISED ? SETTLING + status : status);
     }
-    return !run->model->numbers.fixed_step && shrink(run) ? TLISMNI_OK : UNLOCATED;
+    counts[STATUS] = status;
+    counts[ANSWER] = status == SETTLED ? REMEDY_DONE : NOT_DONE;
+    return TLISMNI_OK;
 }
 
-/* What has to be done after `drive` has returned `code`; DONE at the end of the way. */
-static tlismni_status after(tlismni_run *run, int64_t code, bool hold, double *repaired) {
-    double computed = tlismni_computed(run);
+/* What has to be done after `drive` has returned `code` (`recovery/policy.py`); DONE at the end of the way. */
+static tlismni_status after(tlismni_run *run, int64_t code, bool hold) {
+    int64_t *counts = WHOLES(run, counts);
     switch (code) {
     case REACHED:
     case ARRIVED:
     case WAS_READ:
         return DONE;
     case CHUNK:
+    case DIVIDES:
+    case GOES_BY_IMPULSES:
         return TLISMNI_OK;
     case SETTLE_IT:
-        if (hold || computed > REALS(run, goals)[GOAL]) {
+        if (hold || tlismni_computed(run) > REALS(run, goals)[GOAL]) {
             return DONE;
         }
-        if (WHOLES(run, counts)[EVENTS]) { /* there may be no room for more events */
+        if (counts[EVENTS]) { /* there may be no room for more events */
             drop_events(run);
             return TLISMNI_OK;
         }
         return run->model->numbers.redundant ? NEEDS_ROWS : NEEDS_EVENT;
     case WANTED:
     case EVENT_FAILED:
-        return (tlismni_status)(SETTLING + WHOLES(run, counts)[STATUS]);
+    case UNREPAIRED:
+        return (tlismni_status)(SETTLING + counts[STATUS]);
     case REPARTITION:
         return repair(run);
-    case UNLOCATED:
-        return locate_again(run);
-    case REANALYZE:
-    case SINGULAR:
-    case INNER_DIVERGED:
-    case OUTER_DIVERGED:
-    case OUTER_SLOW:
-        if (*repaired != computed) {
-            *repaired = computed;
-            return repair(run);
-        }
-        if (code != OUTER_DIVERGED && code != OUTER_SLOW && !run->model->numbers.fixed_step && shrink(run)) {
-            if (code == REANALYZE) {
-                *repaired = NAN; /* the matrix of the shorter step has other pivots */
-            }
-            return TLISMNI_OK;
-        }
-        return by_impulses(run, code);
-    case STEP_TOO_SMALL:
-    case JAM:
-        return by_impulses(run, code);
+    case NEAR_SINGULAR:
+    case LAST_RESORT:
+    case FALL_BACK: /* only Python does these */
+        return (tlismni_status)counts[CAUSE];
     default:
         return (tlismni_status)code;
     }
 }
 
 tlismni_status advance_go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
-    double repaired = NAN;
     int64_t *counts = WHOLES(run, counts);
     for (;;) {
         count_events(run, seen);
-        tlismni_status status = after(run, code, hold, &repaired);
+        tlismni_status status = after(run, code, hold);
         seen = counts[EVENTS];
         if (status != TLISMNI_OK) {
             return status == DONE ? TLISMNI_OK : status;
@@ -160,7 +120,7 @@ tlismni_status advance_go_on(tlismni_run *run, int64_t code, bool hold, int64_t 
             return TOO_MANY_STEPS;
         }
         counts[BUDGET] = left < run->model->numbers.chunk ? left : run->model->numbers.chunk;
-        code = call_drive(run, DRIVE, hold);
+        code = go(run, hold);
     }
 }
 

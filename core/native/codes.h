@@ -6,10 +6,9 @@
 /* columns of `times` (exchange.py), `goals`, `counts`, `clock` (state/run_records.py), `counters` (state/workspace_records.py) */
 enum { NOW, ASKED_TIME, LAST_CHANGE, INTERVAL };
 enum { GOAL, LAST_STOP };
-enum { BUDGET, HANDLED, HERE, EVENTS, STATUS };
-enum { STEP_SIZE = 0, TRIAL_STEP = 4 };
+enum { BUDGET, HANDLED, HERE, EVENTS, STATUS, CAUSE, REMEDY, ATTEMPTS, ANSWER };
+enum { UNANSWERED, NOT_DONE, REMEDY_DONE, OTHER_ROWS }; /* of ANSWER */
 enum { STEPS = 0, COUNTERS_SIZE = 14 };
-enum { RATE_SCALE = 15 };
 enum { T0 = 0 };
 enum { FIRST_RATE, SECOND_RATE, RATES_SINCE, RATES_SIZE };
 enum { EVENT_SIZE = 9, GAINS = 7 };
@@ -20,11 +19,11 @@ enum { OUTER_DIVERGED = 1, INNER_DIVERGED, SINGULAR, REANALYZE, NOT_FINITE, OUTE
 /* what `drive` and `exchange` return */
 enum {
     REACHED = 100, EVENT, FULL, CHUNK, STEP_TOO_SMALL, REPARTITION, NEAR_SINGULAR, VIOLATED, UNLOCATED, DUE, SETTLE_IT,
-    JAM, WANTED, EVENT_FAILED, ARRIVED = 201, WAS_READ
+    JAM, WANTED, EVENT_FAILED, DIVIDES, GOES_BY_IMPULSES, LAST_RESORT, FALL_BACK, UNREPAIRED, ARRIVED = 201, WAS_READ
 };
 
 /* what settling an instant returns (events/records.py) */
-enum { SETTLED = 0, NOT_SETTLED = 1 };
+enum { SETTLED = 0, NOT_SETTLED, WANTS_ROOM, WANT_MEMORY };
 
 /* beyond those: statuses of this code, and those of settling behind SETTLING */
 enum {

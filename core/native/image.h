@@ -20,14 +20,13 @@ typedef struct {
 } Head;
 
 typedef struct {
-    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, fixed_step, redundant, events, begins,
-        matrix_words;
-    double start, shortest, punctual;
+    int64_t inputs, channels, contacts, n, event_rows, most_steps, chunk, redundant, events, begins, matrix_words;
+    double start, punctual;
 } Numbers;
 
 typedef struct {
-    int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, clock, counters,
-        method_times, ring, parameters, control, begin, begin_numbers, rates, workspace;
+    int64_t exchange, drive, reads, budget, times, inputs, channels, goals, counts, events, pending, counters,
+        method_times, ring, parameters, begin, begin_numbers, rates, workspace;
 } Places;
 
 /* A parameter, and a word of a run's memory that follows from it: `form` says how (parameters.c). `begins`: the run begins
@@ -51,8 +50,8 @@ typedef struct {
 } Exclusion;
 
 /* The functions that the C code calls: the first ones of the image's list. */
-enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, GO_BY_IMPULSES, LOCATE, ALONG, IN_TIME, BEGIN, MATRIX_WORDS,
-       SAVE_MATRICES, RESTORE_MATRICES, WANT, NORMALISE, CALLED };
+enum { EXCHANGE, TELL, READ, DRIVE, SETTLE, REPAIR, ALONG, IN_TIME, BEGIN, MATRIX_WORDS, SAVE_MATRICES,
+       RESTORE_MATRICES, WANT, NORMALISE, CALLED };
 
 typedef void (*Function)(void);
 

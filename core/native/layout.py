@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..assembly.matrix_state import MATRIX_HEAD
 from ..compiled.library import Library
 from ..linalg.record import VALUES
-from ..rounding import PUNCTUAL, SHORTEST
+from ..rounding import PUNCTUAL
 from ..state.workspace_records import OF_D, OF_KKT
 
 MAGIC = b"TLISMNI\x01"
@@ -24,31 +24,29 @@ IMAGE_HEAD = (
 )  # fmt: skip
 """Sizes and counts, 8 bytes each."""
 
-CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "go_by_impulses", "locate_now",
-          "along_inputs", "in_time", "begin_now", "matrix_words", "save_matrices", "restore_matrices",
-          "want", "normalise")  # fmt: skip
+CALLED = ("exchange", "tell", "read", "drive", "settle_pending", "repair_now", "along_inputs",
+          "in_time", "begin_now", "matrix_words", "save_matrices", "restore_matrices", "want", "normalise")  # fmt: skip
 """Functions that the C code calls itself: the first ones in the list of functions."""
 _MODULES = {
     **dict.fromkeys(("exchange", "tell", "read"), "simulation.exchange"),
-    **dict.fromkeys(("drive", "settle_pending", "locate_now"), "time_loop.drive"),
-    **dict.fromkeys(("repair_now", "go_by_impulses"), "recovery.compiled_repartition"),
+    **dict.fromkeys(("drive", "settle_pending"), "time_loop.drive"),
+    "repair_now": "recovery.compiled_repartition",
     **dict.fromkeys(("along_inputs", "in_time"), "simulation.slopes"),
     "begin_now": "simulation.begin_now", "want": "simulation.read_channels", "normalise": "simulation.normal_form",
     **dict.fromkeys(("matrix_words", "save_matrices", "restore_matrices"), "assembly.matrix_state"),
 }  # fmt: skip
 
 NUMBERS = (
-    "inputs", "channels", "contacts", "n", "event_rows", "most_steps", "chunk", "fixed_step", "redundant",
+    "inputs", "channels", "contacts", "n", "event_rows", "most_steps", "chunk", "redundant",
     "events", "begins", "matrix_words",
-    "start", "shortest", "punctual",
+    "start", "punctual",
 )  # fmt: skip
-"""Counts, and whether a run may begin anew; then the start, s, and what steps and changes of inputs are compared
-with (`advance.py`, `inputs.py`)."""
+"""Counts, and whether a run may begin anew; then the start, s, and what changes of inputs are compared with
+(`inputs.py`)."""
 
 PLACES = (
     "exchange", "drive", "reads", "budget", "times", "inputs", "channels", "goals", "counts", "events", "pending",
-    "clock", "counters", "method_times", "ring", "parameters",
-    "control", "begin", "begin_numbers", "rates", "workspace",
+    "counters", "method_times", "ring", "parameters", "begin", "begin_numbers", "rates", "workspace",
 )  # fmt: skip
 """Where these stand in a run's memory."""
 
@@ -68,10 +66,10 @@ def numbers_of(sim: Any, most_steps: int, begins: bool) -> bytes:
     assembly, exchange = sim.assembly, sim.crossing
     whole = (
         len(assembly.input_names), len(sim.table.channels), len(assembly.contacts), assembly.n,
-        len(sim.drive.events), most_steps, int(exchange._record.table["chunk"][0]), int(bool(sim.settings.step)),
+        len(sim.drive.events), most_steps, int(exchange._record.table["chunk"][0]),
         len(sim.workspace.dropped), len(sim.events), int(begins), most_matrix_words(sim.workspace),
     )  # fmt: skip
-    return struct.pack(f"<{len(whole)}q3d", *whole, sim.t, SHORTEST, PUNCTUAL)
+    return struct.pack(f"<{len(whole)}q2d", *whole, sim.t, PUNCTUAL)
 
 
 def most_matrix_words(workspace: Any) -> int:
@@ -83,12 +81,12 @@ def most_matrix_words(workspace: Any) -> int:
 
 def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """The arrays of PLACES."""
-    exchange, workspace = sim.crossing._record, sim.workspace.arrays
+    exchange = sim.crossing._record
     return (
         exchange.table, sim.drive.record.table, exchange.table["read"], exchange.table["chunk"],
         exchange.arrays["times"],
         exchange.arrays["inputs"], exchange.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
-        sim.drive.pending, sim.clock, workspace["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
-        parameters, workspace["control"], sim.beginning.record.table, sim.beginning.numbers,
-        exchange.arrays["rates"], sim.workspace._record.table,
+        sim.drive.pending, sim.workspace.arrays["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
+        parameters, sim.beginning.record.table, sim.beginning.numbers, exchange.arrays["rates"],
+        sim.workspace._record.table,
     )  # fmt: skip

@@ -27,6 +27,10 @@ static const char *of_settling(int status) {
         return "no forces satisfy the contacts that touch: simulate it in Python, which says what they ask for";
     case 16:
         return "a sliding contact jams (Painleve): use a smaller coefficient of friction, or a force law";
+    case 19:
+    case 20:
+        return "the constraints, those of closed contacts among them, depend on one another here, or the system's matrix is "
+               "singular: start elsewhere, or look at the mechanism in Python, which names them";
     case 40:
         return "the run cannot begin: with these parameters the positions at the start violate the constraints beyond repair; "
                "set those that belong together";

@@ -1,7 +1,5 @@
 """`repair`, compiled, for systems without redundant rows: a new partition and new pivots at the newest row; and what
-is left where that does not help.
-
-Who drives a run without Python calls it; where something has to be built that is not there yet it says so.
+is left where that does not help. Where something has to be built that is not there yet it says so.
 """
 
 from typing import Any
@@ -9,27 +7,46 @@ from typing import Any
 from ..assembly.condition_probe import set_probe
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..assembly.redundant_reactions import analyze_equations
-from ..compiled.jit import compiled
-from ..compiled.views import vec
-from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, call_part, instant_at
+from ..compiled.jit import compiled, internal
+from ..compiled.views import ivec, vec
+from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANTS_ROOM, call_part, instant_at
 from ..linalg.record import WANT_ROOM
 from ..methods.frame_partition import PREFERENCE, prefer_attitudes
 from ..methods.history import recall
 from ..state.run_records import CLOCK_SIZE, PUSH_STEP, STEP_SIZE
-from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV, OK, RATE_SIZE
+from ..state.workspace_records import (
+    ANALYSES,
+    CHOICE_CONDITION,
+    CONDITION,
+    COUNTERS_SIZE,
+    FACTOR_CV,
+    OK,
+    PARTITIONS,
+    RATE_SIZE,
+)
 from ..time_loop.drive import loop_at, method_at, workspace_at
 
 
 @compiled
 def repair_now(drive: Any) -> int:
-    """What `repair` does: a status of `events/records.py`; with any but SETTLED the run cannot go on."""
-    workspace, method, instant = workspace_at(drive.workspace), method_at(drive.method), instant_at(drive.instant)
+    """What `repair` does: a status of `events/records.py`. With one that wants memory it is repeated."""
+    workspace = workspace_at(drive.workspace)
+    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    partitions, analyses = counters[PARTITIONS], counters[ANALYSES]
+    status = _repair(drive, workspace, method_at(drive.method), instant_at(drive.instant))
+    if status == WANTS_ROOM or status == WANT_MEMORY:
+        counters[PARTITIONS], counters[ANALYSES] = partitions, analyses
+    return status
+
+
+@internal
+def _repair(drive: Any, workspace: Any, method: Any, instant: Any) -> int:
     rate = vec(workspace.rate, RATE_SIZE)
     c_v, condition = rate[FACTOR_CV], rate[CONDITION]
     recall(workspace, method, 0)
     evaluate_residuals(workspace)
     prefer_attitudes(workspace, method, PREFERENCE)
-    status = call_part(instant.use_modes, instant, drive, workspace, method)
+    status = int(call_part(instant.use_modes, instant, drive, workspace, method))
     if prefer_attitudes(workspace, method, 1.0 / PREFERENCE):
         set_probe(workspace)
     if status != SETTLED:

@@ -15,33 +15,43 @@ from ..events import Event
 from ..events.impact_law_codes import code_of
 from ..events.instant import Instant
 from ..events.progress import Progress
-from ..events.records import SETTLED
 from ..events.report import MOST_EVENTS
 from ..laws import ForceLaw, ImpactLaw, law_address
 from ..laws.friction import LuGreFriction
-from ..recovery.compiled_repartition import go_by_impulses
+from ..recovery.compiled_repartition import go_by_impulses, repair_now
+from ..recovery.policy import recover
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,
+    ANSWER,
+    ATTEMPTS,
     BUDGET,
+    CAUSE,
     COUNTS_SIZE,
+    DIVIDED_UNTIL,
     DRIVE,
     EVENT_KINDS,
     EVENT_ROWS,
     EVENT_SIZE,
     EVENTS,
+    FAILURES,
+    FIXED_STEP,
     FORCE_NUMBERS,
     FOUND_SIZE,
     GAINS,
     GOAL,
     GOALS_SIZE,
+    HALVINGS,
     HANDLED_AT,
     JUMPS,
     LAST_STOP,
     LEFT_APPROACH,
     LOCATE_SIGNATURE,
+    PARTS_UNTIL,
     PASSED,
+    RECOVER_SIGNATURE,
+    REMEDY,
     ROUNDS,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
@@ -152,6 +162,8 @@ class Drive:
                 "settle": address_of(settle_pending, SETTLE_SIGNATURE) if contacts else 0,
                 "locate": address_of(locate_now, LOCATE_SIGNATURE) if contacts else 0,
                 "push_step": address_of(push_step, SETTLE_SIGNATURE) if contacts else 0,
+                "go_by_impulses": address_of(go_by_impulses, SETTLE_SIGNATURE) if contacts else 0,
+                "recover": address_of(recover, RECOVER_SIGNATURE), "repair": address_of(repair_now, SETTLE_SIGNATURE),
                 "n_breakpoints": len(assembly.breakpoints), "joint_rows": assembly.m_joints,
                 "pass_breakpoint": address_of(pass_breakpoint, SETTLE_SIGNATURE) if assembly.breakpoints else 0,
                 "run": address_of(run, RUN_SIGNATURE), "trial": address_of(trial_step, TRIAL_SIGNATURE),
@@ -196,15 +208,13 @@ class Drive:
         self.goals[GOAL], self.goals[LAST_STOP] = t, stop
         aim_now(self._record.record)
 
-    def locate(self, trial: int | None = None) -> int:
-        """End the step at the first event in it, as `location/search.locate` says, and leave that pending. `trial`:
-        address of what has made the step and makes it again with other sizes; left out: the formula, which makes it
-        again at once."""
+    def locate(self, trial: int) -> int:
+        """End the step at the first event in it, as `event_search.locate` says, and leave that pending. `trial`:
+        address of what has made the step and makes it again with other sizes."""
         own = int(self._record.table["trial"][0])
-        if trial is not None:
-            self._record.set_size("trial", trial)
+        self._record.set_size("trial", trial)
         try:
-            return int(locate_now(self._record.record, trial is None))
+            return int(locate_now(self._record.record, False))
         finally:
             self._record.set_size("trial", own)
 
@@ -224,9 +234,15 @@ class Drive:
         self.goals[PASSED] = t
         return int(pass_breakpoint(self._record.record))
 
-    def go_by_impulses(self) -> bool:
-        """Steps of impulses from the newest row on, where no other step can be made; False where there are none."""
-        return int(go_by_impulses(self._record.record)) == SETTLED
+    def answer(self, what: int) -> None:
+        """Answer what the policy has asked for (`recovery/policy.py`): NOT_DONE, DONE or OTHER_ROWS."""
+        self.counts[ANSWER] = what
+
+    def end_recovery(self, clock: NDArray[np.float64]) -> None:
+        """Nothing is asked for any more, and if the run goes on all the same it does so with whole steps."""
+        self.counts[[CAUSE, REMEDY, ATTEMPTS, ANSWER]] = 0
+        clock[FIXED_STEP] *= 2.0 ** clock[HALVINGS]
+        clock[[HALVINGS, FAILURES, DIVIDED_UNTIL, PARTS_UNTIL]] = 0.0
 
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their

@@ -182,7 +182,7 @@ class Engine(ContactSide):
         corotating = address_of(solve_spinning_stage, STAGE_SIGNATURE) if self.formula.stage is None else 0
         self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE), corotating)
         control = self.workspace.arrays["control"]
-        control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, float(name == "simple")
+        control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, {"newton": 0.0, "simple": 1.0}.get(name, 2.0)
         self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
 
     # ---- at event rate ----------------------------------------

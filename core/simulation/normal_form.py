@@ -23,23 +23,30 @@ from ..state.modes import CLOSED, OPEN, STICKS, memories_at
 from ..state.modes import STEP_FORCES as BLOCKS
 from ..state.run_records import (
     A2,
+    ANSWER,
+    ATTEMPTS,
     B2,
     BREAK_TIME,
     BUDGET,
     CALM,
+    CAUSE,
     CLOCK_SIZE,
     COUNTS_SIZE,
     CROWDED,
+    DIVIDED_UNTIL,
     DRIVE_TYPE,
     EQUAL_STEPS,
     EVENTS,
+    FAILURES,
     FIXED_STEP,
     GOAL,
     GOALS_SIZE,
+    HALVINGS,
     HANDLED,
     HANDLED_AT,
     HERE,
     LAST_STOP,
+    PARTS_UNTIL,
     PASSED,
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
@@ -49,6 +56,8 @@ from ..state.run_records import (
     PUSHES,
     PUSHES_LEFT,
     REJECTED_HERE,
+    REMEDY,
+    REPAIRED_AT,
     STATUS,
     STEP_SIZE,
     STOP_TIME,
@@ -86,6 +95,7 @@ def normalise(exchange: Any, shift: int) -> bool:
     )
     goals[GOAL] = goals[LAST_STOP] = goals[PASSED] = 0.0
     counts[BUDGET] = counts[HANDLED] = counts[EVENTS] = counts[STATUS] = 0
+    counts[CAUSE] = counts[REMEDY] = counts[ATTEMPTS] = counts[ANSWER] = 0
     if goals[HANDLED_AT] != history_time(method, 0):
         goals[HANDLED_AT], counts[HERE] = np.nan, 0
     times[NOW] = times[GOAL_TIME] = times[STEPS_BEFORE] = 0.0
@@ -167,6 +177,10 @@ def _forget_in_clock(drive: Any, workspace: Any, method: Any, loop: Any, shift: 
     if clock[FIXED_STEP] > 0.0:
         clock[STEP_SIZE] = clock[FIXED_STEP]
         clock[EQUAL_STEPS] = clock[PREVIOUS_NORM] = 0.0
+    if clock[REPAIRED_AT] != history_time(method, 0):
+        clock[REPAIRED_AT] = -np.inf
+    if clock[HALVINGS] == 0.0:
+        clock[FAILURES] = clock[DIVIDED_UNTIL] = clock[PARTS_UNTIL] = 0.0
     if loop.rows == 1:
         clock[EQUAL_STEPS] = 0.0
     if clock[PREVIOUS_NORM] == 0.0:

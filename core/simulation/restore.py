@@ -65,7 +65,7 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
     workspace = sim.workspace
     if sim.outer != parts.outer:
         sim.use_outer_loop(parts.outer)
-    sim.fallbacks, sim.divided_steps = list(parts.fallbacks), parts.divided_steps
+    sim.fallbacks = list(parts.fallbacks)
     if workspace.key != parts.key or workspace.dropped != parts.dropped:
         workspace.drop(parts.dropped)
         workspace.engage(*parts.key)

@@ -44,6 +44,7 @@ from ..state.run_records import (
     LOG_COLUMNS,
     LOOP,
     MAX_STEP,
+    REPAIRED_AT,
     STOP_TIME,
     WATCH,
 )
@@ -101,6 +102,7 @@ def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings,
     clock[EAGER] = float(settings.fallback)
     clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
     clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
+    clock[REPAIRED_AT] = -math.inf
 
 
 def build_loop(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
-from ..state.run_records import FIXED_STEP, STEP_SIZE
+from ..state.run_records import DIVIDED_STEPS, FIXED_STEP, STEP_SIZE
 from ..state.workspace_records import COUNTERS_SIZE
 from . import advance, exchange, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
@@ -64,8 +64,6 @@ class Simulation(Engine):
     ModelError, ConsistencyError : before anything is computed.
     """
 
-    divided_steps: int = 0
-    """Fixed steps that did not converge and were divided inside."""
     reported_division: bool = False
     """That steps are divided has been said: once is enough."""
     reported_jumps: frozenset[int] = frozenset()
@@ -160,6 +158,11 @@ class Simulation(Engine):
     def step_size(self) -> float:
         """Size of the solver's next step, s: the fixed one, or what error control proposes."""
         return float(self.clock.item(FIXED_STEP) or self.clock.item(STEP_SIZE))
+
+    @property
+    def divided_steps(self) -> int:
+        """Fixed steps that did not converge and were divided inside."""
+        return int(self.clock.item(DIVIDED_STEPS))
 
     @property
     def horizon(self) -> float:

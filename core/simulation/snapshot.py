@@ -63,7 +63,6 @@ class Snapshot(NamedTuple):
     """Beside the state."""
     fallbacks: tuple[Any, ...]
     """Beside the state."""
-    divided_steps: int
     """Beside the state."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -100,7 +99,6 @@ class Snapshot(NamedTuple):
         return {
             "counters": self.counters.tolist(),
             "fallbacks": [[f.t, f.outer, f.reason] for f in self.fallbacks],
-            "divided_steps": self.divided_steps,
         }
 
 
@@ -155,7 +153,6 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         sim.table.initial_energy,
         workspace.arrays["counters"].copy(),
         tuple(sim.fallbacks),
-        sim.divided_steps,
     )  # fmt: skip
 
 
@@ -200,5 +197,4 @@ def snapshot_of(
         float(facts["initial_energy"]),
         np.array(past["counters"], dtype=np.int64),
         tuple(fallback(*entry) for entry in past["fallbacks"]),
-        int(past["divided_steps"]),
     )

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 
-FORMAT = "tlismni-state-11"
+FORMAT = "tlismni-state-12"
 TYPES = ("<f8", "<i8")
 
 
@@ -33,7 +33,7 @@ class State:
     facts : the deciding scalars and lists (JSON data).
     model_hash : of the model and the method's settings; a state fits only its own.
     events : the events so far, beside the state; states of one run share the tuple while none is added.
-    past : counters, fallbacks and divided steps so far, beside the state (JSON data).
+    past : counters and fallbacks so far, beside the state (JSON data).
     """
 
     arrays: dict[str, NDArray[Any]]

@@ -14,6 +14,7 @@ from ..assembly.slots import MATRICES
 from ..errors import ModelError
 from ..events import Event
 from ..methods.order_selection import MOST_K
+from ..recovery.step_division import MOST_HALVINGS
 from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
 from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE_NAMES, STICKS, contact_memories
@@ -21,12 +22,17 @@ from ..state.run_records import (
     A2,
     B1,
     B2,
+    DIVIDED_STEPS,
+    DIVIDED_UNTIL,
     EAGER,
     EQUAL_STEPS,
+    FAILURES,
     FIXED_STEP,
+    HALVINGS,
     HOLD,
     LARGEST_GROWTH,
     MAX_STEP,
+    PARTS_UNTIL,
     PREVIOUS_NORM,
     PREVIOUS_RATIO,
     REJECTED_HERE,
@@ -54,9 +60,9 @@ _FINITE = (
     "guard",
 )
 _NO_NAN = ("inputs", "watch", "clock")
-_SETTINGS = (MAX_STEP, FIXED_STEP, LARGEST_GROWTH, HOLD, EAGER, B1, B2, A2)
+_SETTINGS = (MAX_STEP, LARGEST_GROWTH, HOLD, EAGER, B1, B2, A2)
 """Columns of the clock that never change in a run."""
-_NOT_NEGATIVE = (EQUAL_STEPS, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE)
+_NOT_NEGATIVE = (EQUAL_STEPS, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE, HALVINGS, FAILURES, DIVIDED_STEPS)
 _LARGEST_COUNT = 2**53
 _HUGE = 1e300
 _SLIDES = (STICKS, IDLE, 1.0, -1.0)
@@ -155,8 +161,8 @@ def _check_facts(sim: "Simulation", state: State) -> None:
     past = state.past
     _need(
         "past",
-        set(past) == {"counters", "fallbacks", "divided_steps"},
-        f"is {sorted(past)}: counters, fallbacks and divided_steps are needed",
+        set(past) == {"counters", "fallbacks"},
+        f"is {sorted(past)}: counters and fallbacks are needed",
     )
     counters = past["counters"]
     whole = isinstance(counters, list) and all(isinstance(x, int) and not isinstance(x, bool) for x in counters)
@@ -167,8 +173,6 @@ def _check_facts(sim: "Simulation", state: State) -> None:
         isinstance(f, list) and len(f) == 3 and _number(f[0]) and isinstance(f[1], str) and isinstance(f[2], str)
         for f in fallbacks
     )
-    divided = past["divided_steps"]
-    _need("divided_steps", _indices([divided], _LARGEST_COUNT), f"is {divided!r}, no count")
     _need("fallbacks", listed, f"is {fallbacks!r}: time, outer loop and reason each")
     names = [contact.name for contact in assembly.contacts]
     for event in state.events:
@@ -247,8 +251,14 @@ def _check_method(sim: "Simulation", arrays: dict[str, NDArray[Any]], own: dict[
 
 
 def _check_clock(clock: NDArray[np.float64], own: NDArray[np.float64]) -> None:
-    columns = list(_SETTINGS)
+    columns, halvings = list(_SETTINGS), float(clock[HALVINGS])
     _need("clock", np.array_equal(clock[columns], own[columns]), "has other settings than the simulation")
     step = float(clock[STEP_SIZE])
     _need("clock", 0.0 < step < math.inf, f"has a step of {step!r} s")
     _need("clock", (clock[list(_NOT_NEGATIVE)] >= 0.0).all(), "has counts below zero")
+    known = halvings.is_integer() and halvings <= (MOST_HALVINGS if own[FIXED_STEP] > 0.0 else 0)
+    _need("clock", known, f"has a fixed step halved {halvings!r} times")
+    whole, expected = (float(x[FIXED_STEP] * 2.0 ** x[HALVINGS]) for x in (clock, own))
+    _need("clock", whole == expected, f"has a fixed step of {whole!r} s")
+    parts = clock[[DIVIDED_UNTIL, PARTS_UNTIL]]
+    _need("clock", np.isfinite(parts).all(), f"has a divided step that ends at {parts.tolist()} s")

@@ -81,12 +81,16 @@ CROWDED = 19  # 1: the last of these windows was next to no time (`events/zeno.p
 # many there were to be at first, since when no contact has come or gone; where the last began, and where the last of a
 # row of them ended
 PUSH_STEP, PUSHES_LEFT, PUSHES, CALM, PUSHED_FROM, PUSHED_UNTIL = range(20, 26)
-CLOCK_SIZE = 26
+REPAIRED_AT = 26  # s: the newest row for which a failed step has had a new partition; -inf: none
+# of the division of a fixed step (`recovery/step_division.py`): how often it has been halved, 0: it is whole; steps in
+# it that have failed; where it ends, and where its present parts grow again, s; how many steps have been divided so far
+HALVINGS, FAILURES, DIVIDED_UNTIL, PARTS_UNTIL, DIVIDED_STEPS = range(27, 32)
+CLOCK_SIZE = 32
 
 # columns of a per-step record
 LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")
 
-# what `run` returns besides the status of a failed step
+# what `run` and `drive` return besides the status of a failed step; `recovery/policy.py` says what follows
 REACHED = 100
 EVENT = 101
 EVENTS_FULL = 102
@@ -95,12 +99,17 @@ STEP_TOO_SMALL = 104
 REPARTITION = 105
 NEAR_SINGULAR = 106
 VIOLATED = 107
-UNLOCATED = 108  # events have been found whose times Python has to locate
+UNLOCATED = 108  # events have been found that could not be located
 DUE = 109  # a breakpoint is due
 SETTLE = 110  # pending events are for Python to settle
 JAM = 111  # the newest step went over a place where sliding contacts jam
 WANTED = 112  # something has to be built before pending events can be settled
 FAILED = 113  # pending events cannot be settled
+DIVIDES = 114  # a fixed step is divided from here on: whoever wants to may say so, and go on
+GOES_BY_IMPULSES = 115  # the same of steps of impulses, CAUSE says why
+LAST_RESORT = 116  # as NEAR_SINGULAR, once all else has failed
+FALL_BACK = 117  # another outer loop is to take over
+UNREPAIRED = 118  # the constraints cannot be partitioned: STATUS
 
 DRIVE = np.dtype(
     [
@@ -108,7 +117,7 @@ DRIVE = np.dtype(
         for name in (
             "workspace", "method", "loop", "instant",  # addresses of the records
             "run", "trial", "accept", "write_sample", "accelerations", "settle", "locate",
-            "push_step",                              # addresses of functions
+            "push_step", "recover", "repair", "go_by_impulses",  # addresses of functions
             "goals",                                  # (GOALS_SIZE,) float64: where to go
             "counts",                                 # (COUNTS_SIZE,) int64
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
@@ -137,6 +146,8 @@ SETTLE_SIGNATURE = types.int64(DRIVE_TYPE)
 call_settle = caller(SETTLE_SIGNATURE)
 LOCATE_SIGNATURE = types.int64(DRIVE_TYPE, types.boolean)
 call_locate = caller(LOCATE_SIGNATURE)
+RECOVER_SIGNATURE = types.int64(DRIVE_TYPE, types.int64)
+call_recover = caller(RECOVER_SIGNATURE)
 
 # columns of `goals`, s
 GOAL, LAST_STOP, HANDLED_AT = range(3)
@@ -147,8 +158,13 @@ BUDGET = 0  # steps and instants with events that `drive` may take
 HANDLED = 1  # instants with events so far
 HERE = 2  # of these at the time HANDLED_AT
 EVENTS = 3  # events in the ring
-STATUS = 4  # of the settling that has ended a run: `events/records.py`
-COUNTS_SIZE = 5
+STATUS = 4  # of the settling, or the repair, that has ended a run: `events/records.py`
+# of `recovery/policy.py`, while it waits for what it has asked for, each 0 else: what has failed, what is being tried,
+# how often, and the answer
+CAUSE, REMEDY, ATTEMPTS, ANSWER = range(5, 9)
+COUNTS_SIZE = 9
+UNANSWERED, NOT_DONE, DONE, OTHER_ROWS = range(4)
+"""Answers; the last: it is done, and other redundant rows are left out now."""
 
 FOUND_SIZE = 7
 FORCE_NUMBERS = 4

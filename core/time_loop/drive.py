@@ -1,8 +1,8 @@
 """The run as one compiled function: steps, event location and what is settled at events, until it reaches its goal or
 something comes up that Python has to do.
 
-`run` makes steps; `drive` goes on where these end at events. What it leaves to Python it leaves untouched, with a code
-of `state/run_records` that says what it is.
+`run` makes steps; `drive` goes on where these end at events, and where they fail by `recover` (`recovery/policy.py`).
+What it leaves to others it leaves untouched, with a code of `state/run_records` that says what it is.
 """
 
 from typing import Any
@@ -27,6 +27,7 @@ from ..state.run_records import (
     CHUNK,
     CLOCK_SIZE,
     COUNTS_SIZE,
+    DIVIDED_UNTIL,
     DRIVE_TYPE,
     DUE,
     EVENT,
@@ -34,13 +35,16 @@ from ..state.run_records import (
     FAILED,
     GOAL,
     GOALS_SIZE,
+    HALVINGS,
     HANDLED,
     JAM,
     LAST_STOP,
     LOOP_TYPE,
+    PARTS_UNTIL,
     PASSED,
     PUSH_STEP,
     REACHED,
+    REMEDY,
     REPARTITION,
     SETTLE,
     STATUS,
@@ -51,6 +55,7 @@ from ..state.run_records import (
     WANTED,
     call_find_events,
     call_locate,
+    call_recover,
     call_run,
     call_settle,
     call_trial,
@@ -70,7 +75,10 @@ def _aim(drive: Any, method: Any, loop: Any) -> int:
     """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
     goals, clock = vec(drive.goals, GOALS_SIZE), vec(loop.clock, CLOCK_SIZE)
     breakpoints = vec(drive.breakpoints, drive.n_breakpoints)
-    now, goal, ahead = history_time(method, 0), goals[GOAL], np.inf
+    now, goal, last_stop, ahead = history_time(method, 0), goals[GOAL], goals[LAST_STOP], np.inf
+    if clock[HALVINGS] > 0.0:
+        # a fixed step that is divided is made to its end
+        goal, last_stop = max(goal, clock[DIVIDED_UNTIL]), min(last_stop, clock[PARTS_UNTIL])
     if now >= goal:
         return REACHED
     for i in range(drive.n_breakpoints):
@@ -82,26 +90,32 @@ def _aim(drive: Any, method: Any, loop: Any) -> int:
         return DUE
     if goal - now <= NO_STEP * abs(goal):
         return REACHED
-    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(goals[LAST_STOP], last), goal
+    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(last_stop, last), goal
     return REACHED if clock[STOP_TIME] - now <= NO_STEP * abs(now) else OK
 
 
 @internal
 def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> int:
-    """Steps and events up to the goal; `hold`: only up to where events are pending."""
-    loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
-    code = _drive_on(drive, workspace, method, loop, hold)
-    loop.may_sleep = 0
-    # whoever builds what is wanted does not look at gaps, and comes back at once
-    if code != WANTED:
-        wake_all(workspace, method, loop)
+    """Steps and events up to the goal; `hold`: only up to where events are pending. Where `recover` has asked for
+    something, its answer counts first."""
+    counts = ivec(drive.counts, COUNTS_SIZE)
+    last = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED] + counts[BUDGET]
+    code = OK if counts[REMEDY] == 0 else call_recover(drive.recover, drive, OK)
+    while code == OK:
+        loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
+        code = _drive_on(drive, workspace, method, loop, hold, last)
+        loop.may_sleep = 0
+        # whoever builds what is wanted does not look at gaps, and comes back at once
+        if code != WANTED:
+            wake_all(workspace, method, loop)
+            code = call_recover(drive.recover, drive, code)
     return code
 
 
 @internal
-def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> int:
+def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool, last: int) -> int:
+    """Up to so many steps and instants in all as `last` says."""
     counts, steps = ivec(drive.counts, COUNTS_SIZE), ivec(workspace.counters, COUNTERS_SIZE)
-    last = steps[STEPS] + counts[HANDLED] + counts[BUDGET]
     side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
     while True:
         if is_due(drive, workspace):

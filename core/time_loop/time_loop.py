@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ..assembly.levels import position_level
 from ..compiled.jit import compiled, compiled_unlocked, internal
 from ..compiled.views import ivec, mat, vec
@@ -31,6 +33,7 @@ from ..state.run_records import (
     PREVIOUS_NORM,
     REACHED,
     REJECTED_HERE,
+    REPAIRED_AT,
     REPARTITION,
     STEP_SIZE,
     STEP_TOO_SMALL,
@@ -168,6 +171,8 @@ def accept(workspace: Any, method: Any, loop: Any) -> None:
     doze(workspace, loop)
     go_on(workspace, loop)
     ivec(workspace.counters, COUNTERS_SIZE)[STEPS] += 1
+    # a way that begins anew from an earlier time may come to the same row again
+    vec(loop.clock, CLOCK_SIZE)[REPAIRED_AT] = -np.inf
     if loop.log_capacity > 0:
         _write_log(workspace, method, loop)
     if loop.capacity > 0 and ivec(workspace.counters, COUNTERS_SIZE)[STEPS] % loop.stride == 0:
