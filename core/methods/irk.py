@@ -171,6 +171,12 @@ def _error_of_step(workspace: Any, method: Any, h: float) -> float:
         for i in range(stages):
             hat_q[l] += h * table[EMBEDDED, JUMP + 1 + i] * rows[i, n + l]
             hat_v[l] += h * table[EMBEDDED, JUMP + 1 + i] * rows[i, 2 * n + l]
+    # what depends on the others jumps with them, and may swing where they do not (positions of hinged bodies in frames)
+    dependent = ivec(workspace.dependent, workspace.m_act)
+    for d in range(workspace.m_act):
+        hat_v[dependent[d]] = 0.0
+        if d < workspace.m_held:
+            hat_q[dependent[d]] = 0.0
     return max(_norm(workspace, hat_q, hat_v), distance * distance / np.hypot(distance, lower))
 
 

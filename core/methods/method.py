@@ -83,7 +83,7 @@ class Formula:
     """Order p (2 or more) of a formula that is judged by its own error of a step; 0: by that of a formula of one order
     less, which it is better than, or not at all (`working_tolerance`)."""
     embedded: bool = False
-    """True if its error is a difference of its stages, in all coordinates whether they depend or not."""
+    """True if its error is the difference to an embedded formula, in all coordinates whether they depend or not."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 

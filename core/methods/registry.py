@@ -74,11 +74,8 @@ def _irk(name: str) -> Formula:
     tableau = TABLEAUS[name]
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)
-    loops, embedded = ("newton", "simple"), not tableau.stiffly_accurate
-    return Formula(
-        irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops,
-        embedded=embedded,
-    )  # fmt: skip
+    loops = ("newton", "simple")
+    return Formula(irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops)
 
 
 def _newmark(alpha: float, beta: float, gamma: float) -> Formula:
