@@ -49,6 +49,9 @@ class Option:
 
 FINEST_WORKING = 1e-12
 """Tolerances of a step are not made finer than that: the error estimates of short steps are not far above rounding."""
+MOST_SUMMED = 100.0
+"""Number of steps whose errors are counted. More are taken only with tolerances that are too fine for the order, and
+would become several times as many."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,7 @@ class Formula:
         """
         if self.sums_up < 2.0:
             return rtol
-        return max(min(rtol, FINEST_WORKING), rtol * rtol ** (1.0 / self.sums_up))
+        return max(min(rtol, FINEST_WORKING), rtol * max(rtol ** (1.0 / self.sums_up), 1.0 / MOST_SUMMED))
 
 
 @dataclass(frozen=True)
