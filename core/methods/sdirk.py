@@ -49,8 +49,9 @@ LEAST_PART = 1e-6
 
 
 @internal
-def sdirk_from_base(workspace: Any, t: float, h: float) -> Any:
-    """One step from (base_q, base_v, base_a) at t. Returns (status, error norm); the result is in the workspace."""
+def sdirk_from_base(workspace: Any, t: float, h: float, differences: int) -> Any:
+    """One step from (base_q, base_v, base_a) at t. Returns (status, error norm); the result is in the workspace. The
+    norm is that of the first of the DIFFERENCES, or the larger one of both."""
     n = workspace.n_ext
     base_q, base_v = vec(workspace.base_q, n), vec(workspace.base_v, n)
     q_star, v_star = vec(workspace.q_star, n), vec(workspace.v_star, n)
@@ -80,7 +81,7 @@ def sdirk_from_base(workspace: Any, t: float, h: float) -> Any:
     norm, base_a = 0.0, vec(workspace.base_a, n)
     weight_q, weight_v = vec(workspace.weight_q, n), vec(workspace.weight_v, n)
     error_q, error_v = stage_v[STAGES], stage_a[STAGES]
-    for kind in range(2):
+    for kind in range(differences):
         for i in range(n):
             of_v, of_a = DIFFERENCES[kind, STAGES] * base_v[i], DIFFERENCES[kind, STAGES] * base_a[i]
             for j in range(STAGES):
@@ -112,7 +113,7 @@ def base_from_row(workspace: Any, method: Any) -> None:
 def sdirk_step(workspace: Any, method: Any, h: float) -> int:
     """One step, with the error estimate of the embedded formula."""
     base_from_row(workspace, method)
-    status, norm = sdirk_from_base(workspace, history_time(method, 0), h)
+    status, norm = sdirk_from_base(workspace, history_time(method, 0), h, 2)
     vec(method.error, 2)[0] = norm
     vec(method.error, 2)[1] = 3.0
     return status
@@ -138,7 +139,7 @@ def _in_unequal_parts(workspace: Any, t: float, h: float, parts: int) -> int:
     while done < h:
         last = size >= h - done
         part = h - done if last else size
-        status, norm = sdirk_from_base(workspace, t + done, part)
+        status, norm = sdirk_from_base(workspace, t + done, part, 1)
         if status != OK:
             return status
         if norm > 1.0 and part > least:
@@ -163,7 +164,7 @@ def sdirk_fine_step(workspace: Any, method: Any, h: float) -> int:
         worst = 0.0
         status = OK
         for part in range(parts):
-            status, norm = sdirk_from_base(workspace, t + part * h / parts, h / parts)
+            status, norm = sdirk_from_base(workspace, t + part * h / parts, h / parts, 1)
             if status != OK:
                 return status
             worst = max(worst, norm)
