@@ -160,7 +160,8 @@ def test_own_force_keeps_its_energy_or_loses_it():
         force = HardeningSpring(name="spring", damping=damping, **spring)
         result = simulate(Model(bodies=[ball], forces=[force]), 2.0, "ebdf", rtol=1e-9, atol=1e-11)
         assert np.abs(result["energy.balance"]).max() < 1e-6
-        assert result["energy.dissipation"][-1] >= least
+        # without damping to rounding of 5 J
+        assert result["energy.dissipation"][-1] >= least - 1e-14
         x = np.hypot(result["ball.x"], result["ball.y"]) - 1.0
         assert result["energy.strain"] == pytest.approx(10.0 * x**2 + 75.0 * x**4, abs=1e-8)
 
