@@ -180,7 +180,7 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     matrix = (_WHOLE, _WHOLE, _WHOLES, _WHOLES, _REALS, _REALS, _REAL)
     factors = (_REALS, _WHOLES, _WHOLES, _REALS, _WHOLES, _WHOLES, _REALS)
     yield row_pivoting.eliminate, (*matrix, *(_WHOLES,) * 5, *factors)
-    yield adams.adams_coefficients, (_REALS, _WHOLE, _REALS, _REALS, _REALS, _REALS)
+    yield adams.adams_coefficients, (_REALS, _WHOLE, _REALS, _REALS, _REALS)
     yield park.park_coefficients, (_REALS, _REALS, _REALS)
     yield (
         linearise.linearise,

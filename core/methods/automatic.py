@@ -46,8 +46,9 @@ ONE_KIND = 100.0
 TIGHT = 1e-7
 """Tolerance below which order 8 costs less than order 6, and with contacts `ebdf` less than `WITH_CONTACTS`."""
 WITH_CONTACTS = 5
-"""Order with contacts: accelerations may jump without an event (a wheel that rolls over the end of a ledge), after
-which a lower order is back sooner. It takes 0.7 to 1.15 times the time of order 6."""
+"""Order with contacts: accelerations may jump without an event (a wheel that rolls over the end of a ledge), which
+estimates of higher orders judge as of smooth motion. Of 150 such runs for each of four tolerances some erred by 7 to
+4400 times the tolerance with orders 6 and 8, none by more than it with order 5. It costs at most 1.2 times the time."""
 ROUGH = 3e-4
 """Tolerance above which the stages of `sdirk4`, one after the other, cost less than the coupled ones of `radau3` where
 a body has a mesh."""

@@ -1,8 +1,6 @@
 """BDF inside TLISMNI: coordinates and velocities, orders 1 to 6, variable step on the actual grid.
 
 Error estimate: (y - extrapolation of degree k) h/(t_{n+1} - t_{n-k}), the next difference over k + 1 for equal steps.
-That factor is of a smooth motion, and vanishes where a step is far shorter than those before it. A jump of y' in such a
-step, which made it short, errs by what the difference is: so the factor is never less than half of that of equal steps.
 """
 
 from typing import Any
@@ -27,6 +25,6 @@ def bdf_step(workspace: Any, method: Any, h: float) -> int:
     if status != OK:
         return status
     span = history_time(method, 0) + h - history_time(method, k)
-    vec(method.error, 2)[0] = predictor_error(workspace, method, table[2], k + 1) * max(h / span, 0.5 / (k + 1.0))
+    vec(method.error, 2)[0] = predictor_error(workspace, method, table[2], k + 1) * h / span
     vec(method.error, 2)[1] = k
     return OK
