@@ -102,8 +102,8 @@ def test_ten_disks_that_stick_and_slip_in_ever_shorter_turns(rest_ratio):
 def test_disks_that_wedge_each_other():
     """At one instant no forces exist with the directions in which the contacts slide: impulses without a collision stop
     them, and the energy that this takes is accounted for."""
-    sim = Simulation(heap(8, 0.3, 0.8, 32, 1e-3), "ebdf")
-    sim.advance(0.61)
+    sim = Simulation(heap(8, 0.3, 0.8, 67, 1e-3), "ebdf")
+    sim.advance(0.4)
     struck: dict[float, list] = {}
     for event in sim.events:
         if event.kind == "impact":

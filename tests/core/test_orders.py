@@ -160,14 +160,14 @@ def test_order_of_a_closed_loop_survives_new_partitions():
         system = slider_crank(0.5, 9.0, 0.5, 1.2, gravity=G)
         assert tuple(body.name for body in system.bodies) == names
         sim = Simulation(system, "ebdf", k=4, step=t_end / count, newton_tolerance=1e-13)
-        scale, seen = sim.assembly.coordinate_scale.copy(), set()
+        scale, seen = sim.workspace.arrays["scale"].copy(), set()
         for k in range(1, 41):
             sim.run_to(t_end, until=0.05 * k)
             if switch:
                 # in turn angles and the crank are the less welcome as independent coordinates
-                sim.assembly.coordinate_scale[:] = scale
-                sim.assembly.coordinate_scale[[2, 5, 8]] = 5.0 if k % 2 else 1.0
-                sim.assembly.coordinate_scale[[0, 1, 2]] *= 1.0 if k % 2 else 0.01
+                sim.workspace.arrays["scale"][:] = scale
+                sim.workspace.arrays["scale"][[2, 5, 8]] = 5.0 if k % 2 else 1.0
+                sim.workspace.arrays["scale"][[0, 1, 2]] *= 1.0 if k % 2 else 0.01
                 repair(sim)
             seen.add(tuple(sim.workspace.structure.dependent.tolist()))
         sample = sim.sample()
