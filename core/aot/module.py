@@ -162,7 +162,8 @@ _SELDOM = tuple(
         "event_detection.joint_loads", "event_detection.repivoting", "event_detection.roots", "events",
         "linalg.analyze", "linalg.ordering", "linalg.row_pivoting", "methods.frame_choice",
         "methods.frame_partition", "methods.frames",
-        "recovery", "simulation", "stage.corotating", "stage.jfnk", "stage.simple", "time_loop.time_stepping",
+        "recovery", "simulation", "stage.corotating", "stage.frame_motion", "stage.jfnk", "stage.simple",
+        "time_loop.time_stepping",
     )
 )  # fmt: skip
 """Where few bytes are worth more than speed: nothing is repeated there to save a jump."""

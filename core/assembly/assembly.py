@@ -14,7 +14,7 @@ from ..contacts.geometry_kinds import EQUATIONS, kind_of
 from ..elements.base import Element, Form, Row
 from ..elements.coordinate import Coordinate
 from ..elements.internal import internal_coordinates_kernel
-from ..elements.spatial_body import EULER
+from ..elements.spatial_body import EULER, rigid_body3d_kernel
 from ..errors import ModelError
 from ..laws import ForceLaw, ImpactLaw
 from ..laws.friction import CoulombFriction, Friction, LuGreFriction
@@ -169,6 +169,19 @@ class Assembly:
     def attitudes(self) -> NDArray[np.int64]:
         """The first of the Euler parameters of each body that has some."""
         return np.array([index for _, coordinate, index in self.body_columns if coordinate == EULER[0]], dtype=np.int64)
+
+    @property
+    def attitude_bodies(self) -> NDArray[np.int64]:
+        """Batch and element of the rigid body whose Euler parameters these are, (attitudes, 2); -1 for others."""
+        address = kernel_address(rigid_body3d_kernel)
+        places = {
+            int(first): (k, element)
+            for k, batch in enumerate(self.batches)
+            if batch.address == address
+            for element, first in enumerate(batch.coord[:, 3])
+        }
+        found = [places.get(int(first), (-1, -1)) for first in self.attitudes]
+        return np.array(found, dtype=np.int64).reshape(-1, 2)
 
     @property
     def is_internal(self) -> NDArray[np.bool_]:

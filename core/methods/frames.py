@@ -6,7 +6,9 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..stage.corotating import RATES, enter, four_of, plus_times, put_four, recall_point
+from ..stage.corotating import enter, recall_point, series_memory
+from ..stage.frame_motion import SPEED
+from ..stage.quaternions import four_of, plus_times, put_four
 from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, PREDICTS, RING_SIZE, call_step
 from ..state.workspace_records import (
     CONTROL_SIZE,
@@ -78,7 +80,7 @@ def _begin(workspace: Any, method: Any, t: float, predicts: bool) -> None:
         q, v, a = to[:n], to[n : 2 * n], to[2 * n : 3 * n]
         at = history_time(method, back)
         for k in range(count):
-            enter(spins[k], at, q, v, a, spinning[k])
+            enter(series_memory(workspace), spins[k], at, q, v, a, spinning[k])
     if vec(method.parameters, 8)[CARRIES] != 0.0:
         row, newest = history_row(workspace, method, 0), rows[row_index(method, 0)]
         for k in range(count):
@@ -110,7 +112,7 @@ def _fastest(workspace: Any) -> float:
     """Rate of the frame that turns fastest, rad/s."""
     rate = 0.0
     for k in range(workspace.n_spins):
-        rate = max(rate, 2.0 * mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k, RATES + 1])
+        rate = max(rate, mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k, SPEED])
     return rate
 
 

@@ -49,7 +49,8 @@ WORKSPACE = np.dtype(
             # the first of the Euler parameters of each body that may be in a turning frame (`stage/corotating.py`),
             # (n_attitudes,) int64; for the time of a step those which are, (n_spins,) int64, their frames,
             # (n_spins, SPIN_SIZE), and the history in these; and the function that solves their stages in space
-            "n_attitudes", "attitudes", "n_spins", "spinning", "spin", "turned", "plain_stage",
+            # ; kernel and element of the inertia that turns with them, (n_attitudes, 2) int64, -1 where there is more
+            "n_attitudes", "attitudes", "attitude_bodies", "n_spins", "spinning", "spin", "turned", "plain_stage",
             # force that the stages of comparison methods subtract from r: (n_ext,)
             "offset",
         )
@@ -141,7 +142,10 @@ call_stage = caller(STAGE_SIGNATURE)
 COUPLED_STAGES = 3
 """Rows of `stage_rows`: the most stages that are solved together."""
 
-SPIN_SIZE = 40
+SPIN_SIZE = 77
+"""Numbers of a turning frame."""
+SERIES, SCRATCH_SIZE = 64, 414
+"""Where in `scratch` the series of a free rotation begins (`stage/free_rotation.py`), and how many numbers it has."""
 
 # columns of `control` (float64)
 NEWTON_TOLERANCE = 0
