@@ -1,6 +1,6 @@
-"""Observed orders of Runge-Kutta formulas in turning frames, which are there under error control only: a body with three
-moments of inertia that tumbles with a weak torque on it, which leaves something to integrate in the frame of a free
-body. Steps are of one size by their greatest one; the tolerance holds none."""
+"""Observed orders of Runge-Kutta formulas in turning frames, which are there under error control only: a body with
+three moments of inertia that tumbles with a weak torque on it, which leaves something to integrate in the frame of a
+free body. Steps are of one size by their greatest one; the tolerance holds none."""
 
 import numpy as np
 import pytest
