@@ -127,11 +127,12 @@ def _set_frame(workspace: Any, method: Any, spin: Any, k: int, kind: int, axis: 
     that of its precession, in space."""
     if kind == FREE_BODY:
         return _set_free(workspace, method, spin, k, t)
-    at, none = history_time(method, 0), (0.0, 0.0, 0.0)
+    i, none = ivec(workspace.attitudes, workspace.n_attitudes)[k], (0.0, 0.0, 0.0)
+    p = four_of(history_row(workspace, method, 0), i)
     if kind == UNIFORM:
-        set_precession(spin, w, none, at, t)
+        set_precession(spin, w, none, p, t)
     else:
-        set_precession(spin, axis, (w[0] - axis[0], w[1] - axis[1], w[2] - axis[2]), at, t)
+        set_precession(spin, axis, (w[0] - axis[0], w[1] - axis[1], w[2] - axis[2]), p, t)
     return True
 
 

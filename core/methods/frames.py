@@ -28,7 +28,7 @@ from .newmark import ALPHA
 
 LARGEST_TURN = 0.4
 """By which a frame may turn in a step under error control, rad: a sixteenth of a turn. What is asked for between steps
-is interpolated in p, to 1e-13 then."""
+is interpolated in p, to 1e-13 then, and to 1e-10 where a body tumbles or its history begins."""
 FAST, FINER, COARSER = 0.5, 1e-4, 100.0
 """Part of LARGEST_TURN beyond which it is the turn that limits the step, and not the error; by how much finer the outer
 loop solves then, and by how much less fine if it fails. What it leaves would be the largest error, and energy would

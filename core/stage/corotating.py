@@ -3,23 +3,24 @@
 Euler parameters of a body that spins at W oscillate at W/2, and what a formula errs in them becomes, with their norm
 held, an error of W that has one sign: energy grows or falls with every turn. So the formulas integrate u instead of p:
 
-    p = f u    p' = f (u' + w u)    p'' = f (u'' + 2 w u' + g u)    g = w' + w w
+    p = f u g    p' = f (u' + W u) g    p'' = f (u'' + 2 W u' + S u) g    W x = w x + x r    S x = W W x + x r'
 
-with products of quaternions, the unit quaternion f(t) of the frame and w = f^-1 f' (`frame_motion.py`); f is 1 at the
-end of the step. As the frame's motion is one and the same smooth one for all rows of the history that a step looks at,
-u is as good a coordinate as p: the order stays. Of a body that moves as its frame does u is constant, which every
-formula integrates exactly. (The idea is that of exponentially fitted formulas, Gautschi 1961, Numer. Math. 3, 381-397.)
+with products of quaternions, unit quaternions f(t) and g(t), constant w = f^-1 f' and r = g' g^-1 (`frame_motion.py`);
+f and g are 1 at the end of the step. As the frame's motion is one and the same smooth one for all rows of the history
+that a step looks at, u is as good a coordinate as p: the order stays. Of a body that moves as its frame does u is
+constant, which every formula integrates exactly. (The idea is that of exponentially fitted formulas, Gautschi 1961,
+Numer. Math. 3, 381-397.)
 
-A stage z = q* + c_q z'', z' = v* + c_v z'' becomes one of p and its derivatives: with k = 2 w v* + g q* and
-D = (1 + 2 c_v w + c_q g)^-1
+A stage z = q* + c_q z'', z' = v* + c_v z'' becomes one of p and its derivatives: with k = 2 W v* + S q*,
+D = (1 + 2 c_v W + c_q S)^-1 and R x = f x g
 
-    p = f (q* - c_q D k) + c_q f D f^-1 p''    p' = f (v* + w q* - (c_v + c_q w) D k) + f (c_v + c_q w) D f^-1 p''
+    p = R (q* - c_q D k) + c_q R D R^-1 p''    p' = R (v* + W q* - (c_v + c_q W) D k) + R (c_v + c_q W) D R^-1 p''
 
 D differs from 1 by the angle of a step: the matrices of the outer loop need not know it.
 
 The constraints give one component of p at least, which is another direction of u at each time. So a stage of a
 Runge-Kutta formula has two points: z of the formula, all four components of it, and (u, u', u'') of p on the
-constraints, at which the forces are. Other stages see z, z', z''. That is the formula for z'' = f^-1 (p''(u, u', t) -
+constraints, at which the forces are. Other stages see z, z', z''. That is the formula for z'' = R^-1 (p''(u, u', t) -
 ...), a smooth equation in all four components, which the motion solves: the order stays. Of points on the constraints
 it would be none of one equation. Formulas with one time see these: their error estimates then know what constraints do.
 """
@@ -30,12 +31,12 @@ from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import OK, SERIES, SPIN_SIZE, call_stage
-from .frame_motion import MOTION_SIZE, TURN, move_frame, rate_of, second_of
-from .quaternions import conjugate, four_of, plus_times, product, put_four, turned_by
+from .frame_motion import MOTION_SIZE, back_from_space, move_frame, times_rate, times_second, to_space
+from .quaternions import four_of, plus_times, put_four
 
-# numbers of a frame, in `spin`, behind those of its motion: D, c_q (f D f^-1 - 1), f (c_v + c_q w) D f^-1 - c_v, and
-# what was in q* and v* and at the last point in space
-INVERSE, OF_Q, OF_V, STARS = MOTION_SIZE, MOTION_SIZE + 4, MOTION_SIZE + 8, MOTION_SIZE + 12
+# numbers of a frame, in `spin`, behind those of its motion: D, c_q (R D R^-1 - 1), R (c_v + c_q W) D R^-1 - c_v
+# (matrices by columns), and what was in q* and v* and at the last point in space
+INVERSE, OF_Q, OF_V, STARS = MOTION_SIZE, MOTION_SIZE + 16, MOTION_SIZE + 32, MOTION_SIZE + 48
 POINT = STARS + 8
 
 
@@ -49,24 +50,62 @@ def series_memory(workspace: Any) -> int:
 def enter(memory: int, spin: Any, t: float, q: Any, v: Any, a: Any, i: int) -> None:
     """(p, p', p'') at t becomes (u, u', u''); `memory` as for `move_frame`."""
     move_frame(memory, spin, t)
-    back, w = conjugate(four_of(spin, TURN)), rate_of(spin)
-    u = product(back, four_of(q, i))
-    rate = plus_times(product(back, four_of(v, i)), product(w, u), -1.0)
-    second = plus_times(product(back, four_of(a, i)), product(w, rate), -2.0)
+    u = back_from_space(spin, four_of(q, i))
+    rate = plus_times(back_from_space(spin, four_of(v, i)), times_rate(spin, u), -1.0)
+    second = plus_times(back_from_space(spin, four_of(a, i)), times_rate(spin, rate), -2.0)
     put_four(q, i, u)
     put_four(v, i, rate)
-    put_four(a, i, plus_times(second, product(second_of(spin), u), -1.0))
+    put_four(a, i, plus_times(second, times_second(spin, u), -1.0))
 
 
 @internal
 def leave(memory: int, spin: Any, t: float, q: Any, v: Any, a: Any, i: int) -> None:
     """(u, u', u'') at t becomes (p, p', p'')."""
     move_frame(memory, spin, t)
-    f, w, u, rate = four_of(spin, TURN), rate_of(spin), four_of(q, i), four_of(v, i)
-    second = plus_times(plus_times(four_of(a, i), product(w, rate), 2.0), product(second_of(spin), u), 1.0)
-    put_four(q, i, product(f, u))
-    put_four(v, i, product(f, plus_times(rate, product(w, u), 1.0)))
-    put_four(a, i, product(f, second))
+    u, rate = four_of(q, i), four_of(v, i)
+    second = plus_times(plus_times(four_of(a, i), times_rate(spin, rate), 2.0), times_second(spin, u), 1.0)
+    put_four(q, i, to_space(spin, u))
+    put_four(v, i, to_space(spin, plus_times(rate, times_rate(spin, u), 1.0)))
+    put_four(a, i, to_space(spin, second))
+
+
+@internal
+def _matrix_times(spin: Any, i: int, x: Any) -> Any:
+    """The matrix whose columns begin at spin[i], times x."""
+    y = (0.0, 0.0, 0.0, 0.0)
+    for j in range(4):
+        y = plus_times(y, four_of(spin, i + 4 * j), x[j])
+    return y
+
+
+@inlined
+def _axis(j: int) -> Any:
+    return 1.0 if j == 0 else 0.0, 1.0 if j == 1 else 0.0, 1.0 if j == 2 else 0.0, 1.0 if j == 3 else 0.0
+
+
+@inlined
+def _of_second(spin: Any, x: Any, c_q: float, c_v: float) -> Any:
+    """D^-1 x"""
+    return plus_times(plus_times(x, times_rate(spin, x), 2.0 * c_v), times_second(spin, x), c_q)
+
+
+@internal
+def _invert(spin: Any, c_q: float, c_v: float) -> None:
+    """D, by elimination without pivoting: D^-1 is 1 but for a part of the angle of a step."""
+    # columns of D^-1 in the place of OF_Q, which is not needed yet
+    for j in range(4):
+        put_four(spin, OF_Q + 4 * j, _of_second(spin, _axis(j), c_q, c_v))
+        put_four(spin, INVERSE + 4 * j, _axis(j))
+    for j in range(4):
+        pivot = 1.0 / spin[OF_Q + 5 * j]
+        for l in range(4):
+            spin[OF_Q + 4 * l + j] *= pivot
+            spin[INVERSE + 4 * l + j] *= pivot
+        for k in range(4):
+            factor = spin[OF_Q + 4 * j + k]
+            for l in range(4 if k != j else 0):
+                spin[OF_Q + 4 * l + k] -= factor * spin[OF_Q + 4 * l + j]
+                spin[INVERSE + 4 * l + k] -= factor * spin[INVERSE + 4 * l + j]
 
 
 @internal
@@ -127,20 +166,20 @@ def _begin_stage(workspace: Any, spin: Any, i: int, t: float, c_q: float, c_v: f
     put_four(spin, STARS, q)
     put_four(spin, STARS + 4, v)
     move_frame(series_memory(workspace), spin, t)
-    f, w, g = four_of(spin, TURN), rate_of(spin), second_of(spin)
-    whole = plus_times(plus_times((1.0, 0.0, 0.0, 0.0), w, 2.0 * c_v), g, c_q)
-    size = 1.0 / (whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2] + whole[3] * whole[3])
-    inverse = (size * whole[0], -size * whole[1], -size * whole[2], -size * whole[3])
-    of_v = product((c_v, c_q * w[1], c_q * w[2], c_q * w[3]), inverse)
-    put_four(spin, INVERSE, inverse)
-    there = turned_by(f, inverse)
-    put_four(spin, OF_Q, (c_q * (there[0] - 1.0), c_q * there[1], c_q * there[2], c_q * there[3]))
-    there = turned_by(f, of_v)
-    put_four(spin, OF_V, (there[0] - c_v, there[1], there[2], there[3]))
-    constant = plus_times(product(g, q), product(w, v), 2.0)
-    put_four(q_star, i, product(f, plus_times(q, product(inverse, constant), -c_q)))
-    put_four(v_star, i, product(f, plus_times(plus_times(v, product(w, q), 1.0), product(of_v, constant), -1.0)))
-    put_four(a, i, product(f, plus_times(product(whole, predicted), constant, 1.0)))
+    _invert(spin, c_q, c_v)
+    for j in range(4):
+        x = _matrix_times(spin, INVERSE, back_from_space(spin, _axis(j)))
+        put_four(spin, OF_Q + 4 * j, plus_times(to_space(spin, x), _axis(j), -1.0))
+        moved = plus_times(to_space(spin, times_rate(spin, x)), four_of(spin, OF_Q + 4 * j), c_v / c_q)
+        for l in range(4):
+            spin[OF_Q + 4 * j + l] *= c_q
+            spin[OF_V + 4 * j + l] = c_q * moved[l]
+    constant = plus_times(times_second(spin, q), times_rate(spin, v), 2.0)
+    x = _matrix_times(spin, INVERSE, constant)
+    put_four(q_star, i, to_space(spin, plus_times(q, x, -c_q)))
+    moved = plus_times(plus_times(v, times_rate(spin, q), 1.0), x, -c_v)
+    put_four(v_star, i, to_space(spin, plus_times(moved, times_rate(spin, x), -c_q)))
+    put_four(a, i, to_space(spin, plus_times(_of_second(spin, predicted, c_q, c_v), constant, 1.0)))
 
 
 @internal
@@ -171,8 +210,8 @@ def use_formula(workspace: Any, c_q: float, c_v: float) -> None:
         q_star, v_star = four_of(vec(workspace.q_star, n), i), four_of(vec(workspace.v_star, n), i)
         # the frame is at the stage's time
         off_q, off_v = plus_times(four_of(q, i), q_star, -1.0), plus_times(four_of(v, i), v_star, -1.0)
-        whole = plus_times(four_of(a, i), product(rate_of(spin), off_v), 2.0)
-        whole = product(four_of(spin, INVERSE), plus_times(whole, product(second_of(spin), off_q), 1.0))
+        whole = plus_times(four_of(a, i), times_rate(spin, off_v), 2.0)
+        whole = _matrix_times(spin, INVERSE, plus_times(whole, times_second(spin, off_q), 1.0))
         put_four(q, i, plus_times(q_star, whole, c_q))
         put_four(v, i, plus_times(v_star, whole, c_v))
         put_four(a, i, whole)
@@ -186,8 +225,8 @@ def add_in_frame(workspace: Any, x: Any) -> None:
     for k in range(workspace.n_spins):
         i, spin = ivec(workspace.spinning, workspace.n_spins)[k], mat(workspace.spin, workspace.n_spins, SPIN_SIZE)[k]
         increment = four_of(x, i)
-        of_q = product(four_of(spin, OF_Q), increment)
-        of_v = product(four_of(spin, OF_V), increment)
+        of_q = _matrix_times(spin, OF_Q, increment)
+        of_v = _matrix_times(spin, OF_V, increment)
         put_four(q, i, plus_times(four_of(q, i), of_q, 1.0))
         put_four(v, i, plus_times(four_of(v, i), of_v, 1.0))
 
@@ -202,4 +241,4 @@ def to_formula(workspace: Any, row: Any, increment: Any) -> None:
         put_four(vec(workspace.q, n), i, four_of(row, i))
         put_four(vec(workspace.v, n), i, four_of(row, n + i))
         move_frame(series_memory(workspace), spin, t)
-        put_four(increment, i, product(conjugate(four_of(spin, TURN)), four_of(increment, i)))
+        put_four(increment, i, back_from_space(spin, four_of(increment, i)))

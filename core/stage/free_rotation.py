@@ -4,10 +4,10 @@ With the momentum m = J w about the centre of mass, in the body's axes, and the 
 
     m' = m x w    p' = p w / 2    w = J^-1 m
 
-are quadratic: each term of a series follows from products of the earlier ones. w is made of Jacobi's elliptic functions
-of nu t, whose poles are at least pi / (2 nu) from any real time, with nu^2 = (J3 - J2) (L^2 - 2 T J1) / (J1 J2 J3), or
-the same with J1 and J3 exchanged (Whittaker, Analytical dynamics, 1937, section 69). As no moment is larger than the sum
-of the other two, nu <= |w| at any time. So in a part of LARGEST_PART rad terms fall at least like 0.27^k.
+are quadratic: each term of a series follows from products of the earlier ones. w is made of elliptic functions of nu t,
+whose poles are at least pi / (2 nu) from any real time, with nu^2 = (J3 - J2) (L^2 - 2 T J1) / (J1 J2 J3), or the same
+with J1 and J3 exchanged (Whittaker, Analytical dynamics, 1937, section 69). As no moment is larger than the sum of the
+other two, nu <= |w| at any time. So in a part of LARGEST_PART rad terms fall at least like 0.27^k.
 """
 
 from typing import Any

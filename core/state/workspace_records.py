@@ -142,7 +142,7 @@ call_stage = caller(STAGE_SIGNATURE)
 COUPLED_STAGES = 3
 """Rows of `stage_rows`: the most stages that are solved together."""
 
-SPIN_SIZE = 77
+SPIN_SIZE = 120
 """Numbers of a turning frame."""
 SERIES, SCRATCH_SIZE = 64, 414
 """Where in `scratch` the series of a free rotation begins (`stage/free_rotation.py`), and how many numbers it has."""
