@@ -1,8 +1,8 @@
 """A heap of spheres of different size in a box: time and events until it rests, beside exudyn's and MuJoCo's contact.
 
-    python benchmarks/heap3d.py [--spheres 20] [--end 2.0] [--most 300] [--only ours exudyn mujoco]
+    python benchmarks/heap3d.py [--spheres 20] [--end 2.0] [--most 300] [--only ours exudyn mujoco] [--method moreau --step 1e-3]
 
-Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf`, one group for all pairs; friction against rolling and
+Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf` or another method, one group for all pairs; friction against rolling and
 spinning, since what rolls without it never rests. exudyn's, without these: `GeneralContact`, a spring and a damper that
 give the same restitution to two spheres of the mean mass, friction proportional to the speed below 1 mm/s; explicit, at
 a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of 1 ms, elliptic
@@ -88,11 +88,13 @@ def overlap(centres: NDArray[np.float64], radii: NDArray[np.float64]) -> float:
     return -float(min(apart.min(), low.min()))
 
 
-def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling: float) -> None:
+def run_ours(
+    start: Places, end: float, rest_ratio: float, most: float, rolling: float, method: str, step: float | None
+) -> None:
     """Run, for `most` seconds of CPU, and print what a demanding reader asks."""
     radii = start[1]
     begun = process_time()
-    sim = Simulation(our_model(start, rest_ratio, rolling), "ebdf")
+    sim = Simulation(our_model(start, rest_ratio, rolling), method, step=step)
     made, deepest, rests_at, said = process_time() - begun, -math.inf, math.nan, 0.0
     begun = process_time()
     for k in range(1, round(end / OUTPUT) + 1):
@@ -116,7 +118,7 @@ def run_ours(start: Places, end: float, rest_ratio: float, most: float, rolling:
     instants = len({event.t for event in sim.events})
     lost = values["energy.dissipation"] + values["energy.impact_loss"]
     print(
-        f"ours: {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} instants; "
+        f"ours ({method}): {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} instants; "
         f"{sim.stats['steps']} steps, {sim.stats['impulse_steps']} of impulses; at rest from {rests_at:.2f} s (now "
         f"{sim.t:.2f} s: fastest {speed:.1g} m/s)"
     )
@@ -242,6 +244,8 @@ def main() -> None:
         "--rolling", type=float, default=1e-3, help="arm of the friction against rolling, m (not exudyn)"
     )
     parser.add_argument("--most", type=float, default=300.0, help="s of CPU for ours")
+    parser.add_argument("--method", default="ebdf", help="of ours: ebdf, moreau ...")
+    parser.add_argument("--step", type=float, help="of ours, s: fixed; left out: as the method has it")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", nargs="+", choices=("mujoco", "exudyn", "ours"), default=("mujoco", "exudyn", "ours"))
     given = parser.parse_args()
@@ -251,7 +255,7 @@ def main() -> None:
     if "exudyn" in given.only:
         run_exudyn(start, given.end)
     if "ours" in given.only:
-        run_ours(start, given.end, given.rest_ratio, given.most, given.rolling)
+        run_ours(start, given.end, given.rest_ratio, given.most, given.rolling, given.method, given.step)
 
 
 if __name__ == "__main__":

@@ -132,7 +132,8 @@ def _called_by_python() -> Iterator[tuple[Any, tuple[Any, ...]]]:
     yield drive.locate_now, (_DR, _FLAG)
     for function in (
         drive.aim_now, drive.wake_now, drive.settle_pending, drive.pass_breakpoint,
-        drive.unsettled_now, drive.open_now, compiled_repartition.repair_now, compiled_repartition.go_by_impulses,
+        drive.unsettled_now, drive.without_impulse_now, drive.open_now,
+        compiled_repartition.repair_now, compiled_repartition.go_by_impulses,
     ):  # fmt: skip
         yield function, (_DR,)
     for function in (exchange.exchange, exchange.tell, exchange.read):

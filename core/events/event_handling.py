@@ -37,7 +37,7 @@ from .progress import COUNTED_SINCE, GUARD_SIZE, IN_A_ROW, MOST_AT_ONCE, RUN_BEG
 from .progress import EVENTS_COUNTED as GUARDED
 from .records import DECLINED, NO_IMPACT, NOT_MET, SETTLED, call_part, clear, copy, scalars
 from .report import MOST_EVENTS, report_not_found, room_for
-from .zeno import MANY_TOUCH, count_instant, may_push
+from .zeno import MANY_TOUCH, begin_impulses, count_instant, may_push, only_impulses
 
 UNSEEN = 1e-8
 """Of the model's energy: what an instant of many contacts may take of it without an account."""
@@ -77,6 +77,9 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
         return DECLINED
     if not _gets_on(drive, t):
         return int(call_part(instant.step_through, instant, drive, workspace, method))
+    if only_impulses(loop) and vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+        begin_impulses(drive, workspace, method, loop)
+        return SETTLED
     _keep(instant, workspace, False)
     step = vec(loop.clock, CLOCK_SIZE)[STEP_SIZE]
     # samples may have been asked for since the step that ended here

@@ -13,6 +13,8 @@ it, the next row is twice as long.
 
 from typing import Any
 
+import numpy as np
+
 from ..assembly.levels import position_level
 from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
@@ -27,6 +29,7 @@ from ..state.run_records import (
     CLOCK_SIZE,
     COUNTS_SIZE,
     CROWDED,
+    FIXED_STEP,
     HERE,
     PUSH_STEP,
     PUSHED_FROM,
@@ -81,6 +84,12 @@ def _size(workspace: Any) -> float:
 
 
 @internal
+def only_impulses(loop: Any) -> bool:
+    """True if all steps of the run are steps of impulses (`method="moreau"`), and none looks for events."""
+    return bool(vec(loop.clock, CLOCK_SIZE)[PUSHES] == np.inf)
+
+
+@internal
 def pushed_lately(workspace: Any, loop: Any, t: float) -> bool:
     """True if the last row of steps of impulses ended a short time before t."""
     clock = vec(loop.clock, CLOCK_SIZE)
@@ -100,15 +109,19 @@ def may_push(drive: Any, workspace: Any, method: Any) -> bool:
     """False where steps of impulses cannot be made: with methods that do not meet the constraints at all levels, and
     where contacts are at massless ends, constraints in space that cannot be looked at alone, or friction with three
     tangents, of which a row of impulses knows two."""
+    return method.exact != 0 and without_impulse(drive, workspace) < 0
+
+
+@internal
+def without_impulse(drive: Any, workspace: Any) -> int:
+    """The first contact that has no row in steps of impulses; -1: all have."""
     law, loop = ivec(drive.law, workspace.n_contacts), loop_at(drive.loop)
-    if method.exact == 0:
-        return False
     for k in range(workspace.n_contacts):
         if ivec(workspace.contact_companion, workspace.n_contacts)[k] != 0:
-            return False
+            return k
         if law[k] == AT_MASSLESS or (law[k] != BY_FORCE and in_space(workspace, k) and not can_look(loop, k)):
-            return False
-    return True
+            return k
+    return -1
 
 
 @internal
@@ -124,21 +137,37 @@ def any_force_law(drive: Any, workspace: Any) -> bool:
 @internal
 def step_through(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Go on from the newest row by steps of impulses; DECLINED, and nothing has happened, where there are none."""
-    loop, t, guard = loop_at(drive.loop), history_time(method, 0), vec(drive.guard, GUARD_SIZE)
-    clock = vec(loop.clock, CLOCK_SIZE)
+    loop = loop_at(drive.loop)
     if (
-        clock[PUSH_STEP] != 0.0
+        vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
         or not may_push(drive, workspace, method)
         or _make_pending(drive, workspace) < MANY_TOUCH
     ):
         return DECLINED
-    clock[PUSHES] = min(2.0 * clock[PUSHES], MOST) if pushed_lately(workspace, loop, t) else FEWEST
-    clock[PUSH_STEP], clock[PUSHES_LEFT], clock[CALM], clock[PUSHED_FROM] = _size(workspace), clock[PUSHES], 0.0, t
+    steps = float(FEWEST)
+    if pushed_lately(workspace, loop, history_time(method, 0)):
+        steps = min(2.0 * vec(loop.clock, CLOCK_SIZE)[PUSHES], MOST)
+    _begin_row(drive, workspace, method, loop, steps)
+    return SETTLED
+
+
+@internal
+def begin_impulses(drive: Any, workspace: Any, method: Any, loop: Any) -> None:
+    """Begin the one row of steps of a run that has no others."""
+    _make_pending(drive, workspace)
+    _begin_row(drive, workspace, method, loop, np.inf)
+
+
+@internal
+def _begin_row(drive: Any, workspace: Any, method: Any, loop: Any, steps: float) -> None:
+    t, guard, clock = history_time(method, 0), vec(drive.guard, GUARD_SIZE), vec(loop.clock, CLOCK_SIZE)
+    fixed = clock[FIXED_STEP] if only_impulses(loop) else 0.0
+    clock[PUSHES] = clock[PUSHES_LEFT] = steps
+    clock[PUSH_STEP], clock[CALM], clock[PUSHED_FROM] = fixed if fixed > 0.0 else _size(workspace), 0.0, t
     if any_force_law(drive, workspace):
         clock[STEP_SIZE] = clock[PUSH_STEP]
     # these steps get on
     ivec(drive.counts, COUNTS_SIZE)[HERE], guard[COUNTED_SINCE], guard[EVENTS_COUNTED] = 0, t, 0.0
-    return SETTLED
 
 
 @internal

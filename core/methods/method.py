@@ -87,6 +87,8 @@ class Formula:
     less, which it is better than, or not at all (`working_tolerance`)."""
     embedded: bool = False
     """True if its error is the difference to an embedded formula, in all coordinates whether they depend or not."""
+    impulses: bool = False
+    """True if the contacts of a whole run are impulses of its steps, and no events are located."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 

@@ -14,7 +14,7 @@ from .newmark import newmark_step
 from .order_selection import select_k, select_stable_k
 from .park import park_step
 from .sdirk import C, sdirk_fine_step, sdirk_step
-from .tableaus import TABLEAUS
+from .tableaus import MIDPOINT, TABLEAUS, Tableau
 
 STARTER_STAGES = tuple(float(c) for c in C)
 
@@ -71,11 +71,16 @@ FINE = 1e-3
 def _irk(name: str) -> Formula:
     if name == "sdirk4":
         return Formula(sdirk_step, stages=STARTER_STAGES, newton_tolerance=FINE, embedded=True)
-    tableau = TABLEAUS[name]
+    return _coupled(TABLEAUS[name])
+
+
+def _coupled(tableau: Tableau, impulses: bool = False) -> Formula:
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)
-    loops = ("newton", "simple")
-    return Formula(irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(), outer_loops=loops)
+    return Formula(
+        irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(),
+        outer_loops=("newton", "simple"), impulses=impulses,
+    )  # fmt: skip
 
 
 def _newmark(alpha: float, beta: float, gamma: float) -> Formula:
@@ -154,6 +159,14 @@ METHODS = {
             + "; sdirk4: SDIRK with 5 stages one after the other, order 4, L-stable",
             {"tableau": Option.word("radau3", (*TABLEAUS, "sdirk4"), "the Runge-Kutta coefficients")},
             lambda o: _irk(o["tableau"]),
+        ),
+        Method(
+            "moreau",
+            "Moreau-Jean time stepping: contacts as impulses of fixed steps, without events; order 1, for crowds of "
+            "contacts; smooth motion by the implicit midpoint rule",
+            {},
+            lambda o: _coupled(MIDPOINT, impulses=True),
+            family="time stepping",
         ),
         *COMPARISON_METHODS,
     )

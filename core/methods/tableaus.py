@@ -149,6 +149,18 @@ class Tableau:
         )
 
 
+MIDPOINT = Tableau(
+    "implicit midpoint rule, order 2, symmetric",
+    (0.5,),
+    ((0.5,),),
+    (1.0,),
+    ((0.5,),),
+    order=2,
+    order_of_estimate=1,
+    start_weight=0.5,
+)
+"""Gauss with one stage: the smooth part of steps of impulses."""
+
 TABLEAUS = {
     "radau3": Tableau(  # Hairer and Wanner, Solving ODEs II, table IV.5.6
         "Radau IIA with 3 stages, order 5, L-stable",

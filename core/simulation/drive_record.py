@@ -70,6 +70,7 @@ from ..time_loop.drive import (
     settle_pending,
     unsettled_now,
     wake_now,
+    without_impulse_now,
 )
 from ..time_loop.sample import write_sample
 from ..time_loop.time_loop import accept, run, trial_step
@@ -243,6 +244,11 @@ class Drive:
         self.counts[[CAUSE, REMEDY, ATTEMPTS, ANSWER]] = 0
         clock[FIXED_STEP] *= 2.0 ** clock[HALVINGS]
         clock[[HALVINGS, FAILURES, DIVIDED_UNTIL, PARTS_UNTIL]] = 0.0
+
+    def without_impulse(self) -> str:
+        """Name of the first contact that steps of impulses cannot pass; empty: there is none."""
+        k = int(without_impulse_now(self._record.record))
+        return self._names[k] if k >= 0 else ""
 
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the current point: they pull, or are held beyond their

@@ -130,12 +130,18 @@ class Engine(ContactSide):
         self.start_open = True
         self.fallbacks: list[Fallback] = []
         self.use_outer_loop(outer)
-        self._method = build_method(self.formula, self.settings, self.assembly.has_waves, self.workspace.state)
+        self._method = build_method(self.formula, self.settings, self.assembly, self.workspace.state)
         self._loop = build_loop(self.workspace, self.formula, self.settings, record, step_records)
         self.name_arrays()
         self.fine_starter = step_address(FINE_STARTER)
         self.guard = Progress(float(t0), self.workspace.state["guard"][0])
         self.drive = Drive(self, self.guard)
+        if self.formula.impulses and self.assembly.contacts and (contact := self.drive.without_impulse()):
+            raise ModelError(
+                f"method '{settings.method}' knows contacts as impulses, and contact '{contact}' has none: its shapes "
+                "have no mass, its friction has three tangents, or its gap cannot be looked at alone; take 'ebdf', "
+                "which locates events"
+            )
         self.beginning = Beginning(self)
         set_control(self.settings, self.formula, self.assembly, self.workspace.arrays["control"])
         self.step_logs: list[NDArray[np.float64]] = []

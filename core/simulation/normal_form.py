@@ -16,7 +16,7 @@ from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
 from ..events.impact_law_codes import AT_MASSLESS, BY_FORCE
-from ..events.zeno import MANY_TOUCH, pushed_lately
+from ..events.zeno import MANY_TOUCH, only_impulses, pushed_lately
 from ..methods.history import history_row, history_time
 from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, NEXT_NORM, RING_SIZE
 from ..state.modes import CLOSED, OPEN, STICKS, memories_at
@@ -197,7 +197,8 @@ def _forget_in_clock(drive: Any, workspace: Any, method: Any, loop: Any, shift: 
             clock[WINDOW_START] = clock[WINDOW_COUNT] = 0.0
     if clock[PUSH_STEP] == 0.0:
         clock[PUSHES_LEFT] = clock[CALM] = clock[PUSHED_FROM] = 0.0
-    if clock[PUSH_STEP] == 0.0 and not pushed_lately(workspace, loop, history_time(method, 0)):
+    lately = pushed_lately(workspace, loop, history_time(method, 0))
+    if clock[PUSH_STEP] == 0.0 and not lately and not only_impulses(loop):
         clock[PUSHES] = clock[PUSHED_UNTIL] = 0.0
 
 

@@ -44,6 +44,7 @@ from ..state.run_records import (
     LOG_COLUMNS,
     LOOP,
     MAX_STEP,
+    PUSHES,
     REPAIRED_AT,
     STOP_TIME,
     WATCH,
@@ -76,16 +77,18 @@ def state_fields(assembly: Assembly) -> list[Field]:
     ]
 
 
-def build_method(formula: Formula, settings: Settings, has_waves: bool, state: NDArray[Any]) -> ArrayRecord:
+def build_method(formula: Formula, settings: Settings, assembly: Assembly, state: NDArray[Any]) -> ArrayRecord:
     """The METHOD record of a formula: its coefficients and an empty history, in the state's buffer (1,)."""
+    impulses = formula.impulses and bool(assembly.contacts)
     names = ("history", "times", "ring", "parameters", "weights", "error", "choice")
     arrays = {name: state[f"method_{name}"][0] for name in names}
     parameters, weights = arrays["parameters"], arrays["weights"]
     parameters[: len(formula.parameters)] = formula.parameters
     if formula.stage is None:
         parameters[PREDICTS] = float(formula.sums_up > 0.0 or formula.embedded)
-    parameters[CARRIES], parameters[ESTIMATE] = float(formula.carries), float(settings.step is None)
-    if formula.select is select_stable_k and not has_waves:
+    parameters[CARRIES] = float(formula.carries)
+    parameters[ESTIMATE] = float(settings.step is None and not impulses)
+    if formula.select is select_stable_k and not assembly.has_waves:
         parameters[LEAST_K] = parameters[MOST_K]
     for row, values in zip(weights, formula.weights, strict=False):
         row[: len(values)] = values
@@ -93,8 +96,10 @@ def build_method(formula: Formula, settings: Settings, has_waves: bool, state: N
     return ArrayRecord(METHOD, arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
 
-def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float) -> None:
-    """What the time loop knows about steps before the first one (`records.py`)."""
+def _set_clock(
+    clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float, impulses: bool
+) -> None:
+    """What the time loop knows about steps before the first one (`records.py`); whether all of them have `impulses`."""
     clock[FIXED_STEP] = settings.step or 0.0
     clock[LARGEST_GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
     controller = CONTROLLERS[settings.controller]
@@ -103,6 +108,7 @@ def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings,
     clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
     clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
     clock[REPAIRED_AT] = -math.inf
+    clock[PUSHES] = math.inf if impulses else 0.0
 
 
 def build_loop(
@@ -118,7 +124,11 @@ def build_loop(
     log_capacity = _LOG_ROWS if step_records else 0
     balls = build_balls(assembly)
     clock, watch = workspace.state["clock"][0], workspace.state["watch"][0]
-    _set_clock(clock, formula, settings, assembly.longest_step)
+    impulses = formula.impulses and bool(assembly.contacts)
+    _set_clock(clock, formula, settings, assembly.longest_step, impulses)
+    starter, fine_starter = STARTER if settings.step is None else FINE_STARTER, FINE_STARTER
+    if impulses:
+        starter = fine_starter = formula.step
     return ArrayRecord(
         LOOP,
         {
@@ -138,8 +148,8 @@ def build_loop(
             "select": 0 if formula.select is None else step_address(formula.select),
             "log_capacity": log_capacity,
             "step": step_address(formula.step),
-            "starter": step_address(STARTER if settings.step is None else FINE_STARTER),
-            "fine_starter": step_address(FINE_STARTER),
+            "starter": step_address(starter),
+            "fine_starter": step_address(fine_starter),
             "rows": formula.rows,
             "capacity": capacity,
             "may_sleep": 0,

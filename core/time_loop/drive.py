@@ -18,6 +18,7 @@ from ..events.event_handling import go_on_behind, settle
 from ..events.inconsistent_modes import find_unsettled
 from ..events.moved_surfaces import find_moved
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, scalars
+from ..events.zeno import only_impulses, without_impulse
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
 from ..state.method_records import METHOD_TYPE
@@ -145,7 +146,7 @@ def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool, la
         left = last - steps[STEPS] - counts[HANDLED]
         if left <= 0:
             return CHUNK
-        if vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0:
+        if vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0 or only_impulses(loop):
             side, code = 0.0, call_settle(drive.push_step, drive)
             if code != OK:
                 return code
@@ -234,6 +235,12 @@ def unsettled_now(drive: Any) -> bool:
     unsettled = ivec(instant.unsettled, workspace.n_contacts)
     found = find_unsettled(instant, workspace, unsettled)
     return find_moved(workspace, method_at(drive.method), unsettled) or found
+
+
+@compiled
+def without_impulse_now(drive: Any) -> int:
+    """`without_impulse`, for Python."""
+    return without_impulse(drive, workspace_at(drive.workspace))
 
 
 @compiled

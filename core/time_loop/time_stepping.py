@@ -15,9 +15,9 @@ from ..event_detection.contact_evaluation import set_travel
 from ..event_detection.contact_sleeping import sleeps_on
 from ..event_detection.trial_steps import make_trial
 from ..events.impact_law_codes import BY_FORCE
-from ..events.zeno import any_force_law, end_pushing, near_level
+from ..events.zeno import any_force_law, begin_impulses, end_pushing, near_level, only_impulses
 from ..methods.history import history_time, recall
-from ..state.modes import ACTIVE, OPEN, UNWATCHED, memories_at
+from ..state.modes import ACTIVE, OPEN, STEP_FORCES, UNWATCHED, memories_at
 from ..state.run_records import (
     CLOCK_SIZE,
     EVENTS_FULL,
@@ -55,6 +55,9 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     if loop.log_capacity > 0 and ivec(loop.log_cursor, 1)[0] >= loop.log_capacity:
         return EVENTS_FULL
     clock, t, error = vec(loop.clock, CLOCK_SIZE), history_time(method, 0), vec(method.error, 2)
+    if clock[PUSH_STEP] == 0.0:
+        begin_impulses(drive, workspace, method, loop)
+        return OK
     remaining, forces = clock[STOP_TIME] - t, any_force_law(drive, workspace)
     h = min(clock[PUSH_STEP], remaining)
     if forces and _any_acts(workspace):
@@ -105,7 +108,7 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     ivec(workspace.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
     clock[PUSHED_FROM] = t
     clock[PUSHES_LEFT] -= 1.0
-    if not touches:
+    if not touches and not only_impulses(loop):
         # nothing is left of the crowd
         end_pushing(workspace, loop, history_time(method, 0))
     return REPARTITION if partition_strained(workspace) else OK
@@ -137,6 +140,7 @@ def _find_touching(drive: Any, workspace: Any, method: Any, loop: Any, h: float,
         0.0,
     )
     law, sleeping = ivec(drive.law, workspace.n_contacts), ivec(workspace.sleeping, workspace.n_contacts)
+    memory = memories_at(workspace.memory, workspace.n_contacts)
     for k in range(workspace.n_contacts):
         if law[k] == BY_FORCE:
             continue
@@ -147,6 +151,10 @@ def _find_touching(drive: Any, workspace: Any, method: Any, loop: Any, h: float,
     for k in range(workspace.n_contacts):
         if law[k] != BY_FORCE and sleeping[k] == 0 and phi[rows[k]] <= NEAR * deepest:
             pending[k] = 1
+        if law[k] != BY_FORCE and pending[k] == 0:
+            # it has come apart: when it meets again that is another impact
+            for block in range(STEP_FORCES):
+                memory[k].step_force[block] = 0.0
     return touches
 
 

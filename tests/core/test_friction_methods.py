@@ -37,7 +37,7 @@ from tlismni.core import (
 MU = 0.3
 COMPARISON = ("baumgarte", "hht_i3", "hht_ggl", "generalized_alpha")
 FAMILY = [
-    *((name, {}) for name in METHODS if name not in COMPARISON and name != "projection"),
+    *((name, {}) for name, method in METHODS.items() if method.family == "TLISMNI"),
     ("irk", {"tableau": "sdirk4"}),
     ("ebdf", {"k": "auto"}),
     ("ebdf", {"outer": "jfnk"}),

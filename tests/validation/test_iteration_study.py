@@ -170,8 +170,9 @@ def test_claims_on_methods_that_did_not_run_are_not_judged(methods: list[str], c
 
 
 def test_every_method_of_the_core_runs() -> None:
-    study = iteration_study(["chain"], set(METHODS) - {"bdf", "ebdf"}, tolerances=(1e-3,), quick=True)
-    assert {run.setting.method for run in study.runs} == set(METHODS) - {"bdf", "ebdf"}
+    controlled = set(METHODS) - {"moreau"}
+    study = iteration_study(["chain"], controlled - {"bdf", "ebdf"}, tolerances=(1e-3,), quick=True)
+    assert {run.setting.method for run in study.runs} == controlled - {"bdf", "ebdf"}
     assert all(run.ok and run.error < 0.5 for run in study.runs if run.loop == "newton")
 
 

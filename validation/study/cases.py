@@ -72,6 +72,8 @@ ORDER_CASES = (
     _case("irk", 4, tableau="gauss2"),
     _case("irk", 5, tableau="radau3"),
     _case("irk", 6, tableau="gauss3"),
+    # without contacts: the implicit midpoint rule
+    _case("moreau", 2),
     # comparison methods: Negrut, Rampalli, Ottarsson and Sajdak 2007; Arnold and Bruels 2007
     _case("hht_i3", 2),
     _case("hht_ggl", 2),
@@ -102,6 +104,8 @@ CONTENDERS = (
     *(Setting("irk", {"tableau": name}) for name in ("sdirk4", "gauss2", "radau3", "gauss3")),
 )
 """What `study iterations` compares."""
+WITHOUT_ERROR_CONTROL = ("moreau",)
+"""Methods that no tolerance tells how large their steps are."""
 
 
 def order_cases(methods: Iterable[str] | None = None) -> tuple[OrderCase, ...]:
@@ -119,13 +123,14 @@ def order_cases(methods: Iterable[str] | None = None) -> tuple[OrderCase, ...]:
 
 
 def contenders(methods: Iterable[str] | None = None) -> tuple[Setting, ...]:
-    """The contenders that the core can run, of the given methods or all; every method has at least one.
+    """The contenders that the core can run, of the given methods or all; every method with error control has at least
+    one.
 
     Raises ModelError for a method that the core does not have.
     """
     found = [setting for setting in CONTENDERS if setting.available]
     with_line = {setting.method for setting in found}
-    found += [Setting(name) for name in METHODS if name not in with_line]
+    found += [Setting(name) for name in METHODS if name not in (*with_line, *WITHOUT_ERROR_CONTROL)]
     chosen = _known(methods)
     return tuple(setting for setting in found if setting.method in chosen)
 

@@ -1,0 +1,159 @@
+"""Moreau-Jean time stepping as the method of a whole run: contacts as impulses of fixed steps, without events."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers import G, point_pendulum
+from test_heap3d import box
+from tlismni.core import (
+    Box2D,
+    ContactGroup2D,
+    CoulombFriction,
+    HalfPlane2D,
+    HalfSpace3D,
+    Marker2D,
+    Marker3D,
+    Model,
+    ModelError,
+    NewtonImpact,
+    RigidBody2D,
+    RigidBody3D,
+    Simulation,
+    Sphere3D,
+    SphereOnHalfSpace3D,
+    State,
+    TurningFriction,
+    simulate,
+)
+from tlismni.models import load
+
+
+def slope(steps, errors):
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def boxes(rows, friction=0.5, order=None, restitution=0.0):
+    """A pyramid of sharp boxes on the ground, `rows` of them in its lowest layer; in the order of a list."""
+    width, height, mass = 0.2, 0.1, 1.0
+    places = [
+        ((k - 0.5 * (rows - layer - 1)) * 1.2 * width, (layer + 0.5) * height)
+        for layer in range(rows)
+        for k in range(rows - layer)
+    ]
+    places = [places[i] for i in (range(len(places)) if order is None else order)]
+    moment = mass * (width**2 + height**2) / 12.0
+    bodies = [RigidBody2D(name=f"b{k}", mass=mass, inertia=moment, position=place) for k, place in enumerate(places)]
+    group = ContactGroup2D(
+        name="pile",
+        boxes=[Box2D(marker=Marker2D(body=f"b{k}"), width=width, height=height) for k in range(len(places))],
+        half_planes=[HalfPlane2D(marker=Marker2D())],
+        law=NewtonImpact(restitution=restitution), friction=CoulombFriction(coefficient=friction),
+    )  # fmt: skip
+    return Model(gravity=(0.0, -G), bodies=bodies, groups=[group])
+
+
+def block(speed, friction=0.3):
+    """A ball that cannot roll, on a plane in space: it slides until friction has stopped it."""
+    ball = RigidBody3D(name="b", mass=2.0, inertia=(1e9,) * 3, position=(0.0, 0.0, 0.1), velocity=(speed, 0.0, 0.0))
+    contact = SphereOnHalfSpace3D(
+        name="floor", sphere=Sphere3D(marker=Marker3D(body="b"), radius=0.1), plane=HalfSpace3D(marker=Marker3D()),
+        law=NewtonImpact(restitution=0.0), friction=CoulombFriction(coefficient=friction),
+    )  # fmt: skip
+    return Model(gravity=(0.0, 0.0, -G), bodies=[ball], contacts=[contact])
+
+
+def test_order_one_through_bounces():
+    """Height of a ball after its first two bounces, against the parabolas."""
+    model = load("bouncing_ball").model.with_parameters({"restitution": 0.8})
+    height = float(simulate(model, 1e-9)["ball.y"][0]) - 0.0
+    radius = height - float(simulate(model, 1e-9)["floor.gap"][0])
+    first = math.sqrt(2.0 * (height - radius) / G)
+    speed = 0.8 * G * first
+    second = first + 2.0 * speed / G
+    t_end = second + 0.25
+    exact = radius + 0.8 * speed * 0.25 - 0.5 * G * 0.25**2
+    steps = 2e-3 * 0.83 ** np.arange(16)
+    errors = [abs(float(simulate(model, t_end, "moreau", step=h)["ball.y"][-1]) - exact) for h in steps]
+    # where in a step the ball hits is as good as random: the largest error at steps up to each size
+    largest = np.maximum.accumulate(errors[::-1])[::-1]
+    assert largest[0] < 3.0 * steps[0] * speed
+    assert 0.7 < slope(steps, largest) < 1.5
+
+
+def test_order_two_without_contacts():
+    model, steps = point_pendulum(0.3, 1.0), np.array([4e-3, 2e-3, 1e-3])
+    reference = simulate(model, 1.0, "irk", rtol=1e-12, atol=1e-12)
+    errors = [np.max(np.abs(simulate(model, 1.0, "moreau", step=h).q[-1] - reference.q[-1])) for h in steps]
+    assert slope(steps, errors) == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_block_is_stopped_by_friction_and_stays():
+    speed, mu = 1.0, 0.3
+    result = simulate(block(speed, mu), 2.0, "moreau", step=1e-3)
+    stop = speed / (mu * G)
+    assert result["b.x"][-1] == pytest.approx(0.5 * speed * stop, abs=1e-3 * speed)
+    late = result.t > stop + 2e-3
+    assert np.ptp(result["b.x"][late]) < 1e-9
+    assert result["floor.normal_force"][late] == pytest.approx(2.0 * G, rel=1e-9)
+    assert np.max(np.abs(result["floor.gap"])) < 1e-15
+    # friction takes all of it, and the ledger says so
+    assert result["energy.impact_loss"][-1] == pytest.approx(1.0, rel=1e-9)
+    assert np.max(np.abs(result["energy.balance"])) < 1e-9
+
+
+@pytest.mark.parametrize("rows, seed", [(2, 0), (4, 1)])
+def test_pyramids_of_boxes_stay_in_any_order_of_the_list(rows, seed):
+    count = rows * (rows + 1) // 2
+    order = np.random.default_rng(seed).permutation(count)
+    sim = Simulation(boxes(rows, order=order), "moreau", step=2e-3)
+    start = sim.workspace.arrays["q"][: 3 * count].copy()
+    sim.advance(2.0)
+    assert np.max(np.abs(sim.workspace.arrays["q"][: 3 * count] - start)) < 1e-9
+    assert np.max(np.abs(sim.workspace.arrays["v"][: 3 * count])) < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_spheres_come_to_rest_and_energy_only_falls(seed):
+    count = 9
+    rng = np.random.default_rng(seed)
+    radii, k = rng.uniform(0.03, 0.05, count), np.arange(count)
+    places = np.stack([0.12 * (k % 3 + 0.5), 0.12 * (k // 3 + 0.5), np.full(count, 0.1)], axis=1)
+    places += rng.uniform(-0.008, 0.008, (count, 3))
+    model = box(places, radii, turning=TurningFriction(rolling=1e-3, spinning=5e-4))
+    result = simulate(model, 1.6, "moreau", step=2e-3)
+    assert result.stats["impulse_steps"] == result.stats["steps"] > 700
+    total = result["energy.kinetic"] + result["energy.potential"]
+    assert np.max(np.diff(total)) < 1e-9 * total[0]
+    assert np.max(np.abs(result.v[-1])) < 1e-9
+    gaps = [result[name] for name in result.channels if name.endswith(".gap")]
+    assert min(gap[1:].min() for gap in gaps) > -1e-9
+    # it presses on the floor by its weight
+    on_floor = [c.name for c in model.contacts if getattr(c, "plane", None) == model.groups[0].half_spaces[0]]
+    assert len(on_floor) == count
+    floor = sum(result[f"{name}.normal_force"][-1] for name in on_floor)
+    assert floor == pytest.approx(8400.0 * G * np.sum(radii**3), rel=1e-6)
+
+
+def test_it_goes_on_from_a_state_bit_for_bit():
+    model = boxes(3, restitution=0.3)
+    sim = Simulation(model, "moreau", step=3e-3)
+    sim.advance(0.1)
+    stored = sim.state().to_bytes()
+    sim.advance(0.3)
+    other = Simulation(model, "moreau", step=3e-3)
+    other.restore(State.from_bytes(stored))
+    other.advance(0.3)
+    assert other.state() == sim.state()
+
+
+def test_its_own_step_is_that_of_the_models_time():
+    """Left out, the step follows from the model: the same motion in other units of time takes the same steps."""
+    slow = simulate(boxes(2), 0.5, "moreau")
+    assert 50 < slow.stats["steps"] < 50_000
+
+
+def test_contacts_without_impulses_are_refused_by_name():
+    model = load("mass_on_rod", massless_contact=True).model
+    with pytest.raises(ModelError, match=r"method 'moreau' knows contacts as impulses, and contact '\w+' has none"):
+        simulate(model, 1e-4, "moreau")
