@@ -1,13 +1,14 @@
 """A heap of spheres of different size in a box: time and events until it rests, beside exudyn's and MuJoCo's contact.
 
-    python benchmarks/heap3d.py [--spheres 20] [--end 2.0] [--most 300] [--only ours exudyn mujoco] [--method moreau --step 1e-3]
+    python benchmarks/heap3d.py [--spheres 20] [--end 2.0] [--most 300] [--only ours exudyn mujoco]
+    python benchmarks/heap3d.py --only ours --method moreau --step 1e-3
 
-Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf` or another method, one group for all pairs; friction against rolling and
-spinning, since what rolls without it never rests. exudyn's, without these: `GeneralContact`, a spring and a damper that
-give the same restitution to two spheres of the mean mass, friction proportional to the speed below 1 mm/s; explicit, at
-a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of 1 ms, elliptic
-cones, the same arms; it knows no restitution, so that its heap bounces less (pip install mujoco, or leave it out with
---only). All hand out positions every 10 ms.
+Ours: contacts as constraints (e = 0.3, mu = 0.4), `ebdf` or another method, one group for all pairs; friction against
+rolling and spinning, since what rolls without it never rests. exudyn's, without these: `GeneralContact`, a spring and
+a damper that give the same restitution to two spheres of the mean mass, friction proportional to the speed below 1
+mm/s; explicit, at a hundredth of the contact's period. MuJoCo's: its soft constraints with default softness, steps of
+1 ms, elliptic cones, the same arms; it knows no restitution, so that its heap bounces less (pip install mujoco, or
+leave it out with --only). All hand out positions every 10 ms.
 """
 
 import argparse
@@ -118,9 +119,9 @@ def run_ours(
     instants = len({event.t for event in sim.events})
     lost = values["energy.dissipation"] + values["energy.impact_loss"]
     print(
-        f"ours ({method}): {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} instants; "
-        f"{sim.stats['steps']} steps, {sim.stats['impulse_steps']} of impulses; at rest from {rests_at:.2f} s (now "
-        f"{sim.t:.2f} s: fastest {speed:.1g} m/s)"
+        f"ours ({method}): {seconds:.1f} s of CPU ({made:.1f} s to make it); {len(sim.events)} events at {instants} "
+        f"instants; {sim.stats['steps']} steps, {sim.stats['impulse_steps']} of impulses; at rest from "
+        f"{rests_at:.2f} s (now {sim.t:.2f} s: fastest {speed:.1g} m/s)"
     )
     now = overlap(q[:, :3], radii)
     print(

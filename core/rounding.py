@@ -151,8 +151,6 @@ STICKING_MOVES = 1e-9
 """Of the motion that friction is to take away: with more left of it, contacts do not all stick."""
 BEYOND_LIMIT, NO_FRICTION = 1e-12, 1e-14
 """Parts of a limit and of the largest friction by which friction may be beyond its limit."""
-FORCE_AT_EVENT = 1e-6
-"""Of the largest force: what the time of an event leaves open of forces that are zero there."""
 REACHES_LIMIT_NOW = 1e-6
 """Of the limit, in space: friction of a contact whose event is that it reaches it is that near at least."""
 STICKS_STILL = 1e-9

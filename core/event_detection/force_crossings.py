@@ -52,7 +52,7 @@ def _margins(workspace: Any, k: int, lam: Any) -> Any:
 @internal
 def _starting(workspace: Any, k: int, lam: Any) -> Any:
     """The margins at the newest row; infinite those that are not positive there: a contact that is held closed though
-    it pulls a little, for it would come back at once (`returns_at_once`), is looked at from the end of the step on."""
+    it pulls a little, for it would come back at once (`_returns_at_once`), is looked at from the end of the step on."""
     force, left = _margins(workspace, k, lam)
     return force if force > 0.0 else np.inf, left if left > 0.0 else np.inf
 

@@ -16,7 +16,6 @@ from ..state.modes import AT_LIMIT, IDLE, OF_FIRST, OF_NORMAL, OF_SECOND
 from ..state.modes import STICKS as STUCK
 from .free_tangents import add_tangents, find_sliding, inverse_mass, is_full, list_held, turn_to_friction
 from .independent_directions import independent_of
-from .loaded import is_loaded
 from .rates import masses
 from .records import SETTLED, scalars, touching
 from .three_tangents import axis_in_frame, first_of, size_of
@@ -76,43 +75,6 @@ def _list_closed(instant: Any) -> int:
             some[at] = i
             total += 1
     return total
-
-
-@internal
-def _open_unloaded(instant: Any, workspace: Any) -> None:
-    """Contacts without force whose gaps others hold do not stay closed: they would share the others' load."""
-    count, some, chosen = (
-        scalars(instant).count,
-        ivec(instant.some, 3 * instant.most),
-        ivec(instant.chosen, 3 * instant.most),
-    )
-    closes, total = vec(instant.closes, instant.most), 0
-    for block in range(3):
-        for i in range(count):
-            sticks = block == 0 or (
-                vec(instant.slides, instant.most)[i] == 0.0 and touching(instant)[i].static_friction > 0.0
-            )
-            if (
-                closes[i] != 0.0
-                and is_loaded(instant, i)
-                and sticks
-                and masses(instant, count)[block * count + i, block * count + i] > 0.0
-            ):
-                some[total] = block * count + i
-                total += 1
-    loaded = total
-    for i in range(count):
-        if closes[i] != 0.0 and not is_loaded(instant, i):
-            some[total] = i
-            total += 1
-    if total == loaded:
-        return
-    kept = independent_of(instant, workspace, loaded, total, total, scalars(instant).rank_tolerance)
-    for j in range(loaded, total):
-        closes[some[j]] = 0.0
-    for j in range(kept):
-        if chosen[j] >= loaded:
-            closes[some[chosen[j]]] = 1.0
 
 
 @internal
@@ -195,7 +157,6 @@ def keep(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     friction, chosen = vec(drive.friction, workspace.n_contacts), ivec(instant.chosen, 3 * instant.most)
     for i in range(count):
         implied[i] = 0.0
-    _open_unloaded(instant, workspace)
     for i in range(count):
         flag[i] = 1.0 if vec(instant.closes, instant.most)[i] != 0.0 else 0.0
     find_sliding(instant, list_held(instant, workspace, flag, REACHES_LIMIT_NOW, full), full)
