@@ -26,7 +26,7 @@ from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
 from .report import report
 from .touching import find_touching
-from .zeno import end_pushing
+from .zeno import end_pushing, only_impulses
 
 TOLERANCE, SWEEPS = 1e-7, 1000
 """Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""
@@ -138,10 +138,9 @@ def _bounce(instant: Any, drive: Any, workspace: Any, h: float) -> None:
         memories_at(workspace.memory, workspace.n_contacts),
     )
     off, rate, takes = part(instant, rows, OFF), part(instant, rows, BEFORE), part(instant, rows, TAKES)
-    falls_of_model, contact_rows = (
-        vec(workspace.control, CONTROL_SIZE)[RATE_SCALE] ** 2,
-        ivec(workspace.contact_rows, workspace.n_contacts),
-    )
+    contact_rows, alone = ivec(workspace.contact_rows, workspace.n_contacts), only_impulses(loop_at(drive.loop))
+    # of a crowd, whose steps are a part of the model's own time; those of a whole run may be any
+    falls_of_model = 0.0 if alone else vec(workspace.control, CONTROL_SIZE)[RATE_SCALE] ** 2
     for i in range(scalars(instant).count):
         k, approach, falls = contacts[i], -rate[i], max(contact[i].closing_acceleration, 0.0)
         e = vec(drive.restitution, workspace.n_contacts)[k]
@@ -152,6 +151,9 @@ def _bounce(instant: Any, drive: Any, workspace: Any, h: float) -> None:
         contact[i].comes_to_rest = 1.0 if new and e * approach > least else 0.0
         if contact[i].comes_to_rest != 0.0:
             off[i] += e * rate[i]
+        elif alone and h > 0.0:
+            # a gap that is there may close in the next step
+            off[i] += max(contact[i].gap, 0.0) / h
 
 
 @internal

@@ -81,6 +81,21 @@ def test_order_one_through_bounces():
     assert 0.7 < slope(steps, largest) < 1.5
 
 
+def test_bounces_are_those_of_the_events():
+    """Of a ball that spins so fast that its turns are the fastest motion of the model."""
+    scenario = load("spinning_sphere")
+    exact = [e for e in simulate(scenario.model, 0.7, rtol=1e-9).events if e.kind == "impact"]
+    found = simulate(scenario.model, 0.7, "moreau", step=2.5e-4)
+    assert len(exact) >= 4 and len(found.events) >= 4
+    for bounce, other in zip(found.events[:4], exact[:4], strict=True):
+        assert bounce.t == pytest.approx(other.t, abs=2e-3)
+        assert bounce.approach_speed == pytest.approx(other.approach_speed, rel=0.02)
+    later = simulate(scenario.model, 1.0, "moreau", step=1e-3)
+    gap = next(name for name in later.channels if name.endswith(".gap"))
+    # it does not float
+    assert np.max(np.abs(later[gap][-50:])) < 1e-12
+
+
 def test_order_two_without_contacts():
     model, steps = point_pendulum(0.3, 1.0), np.array([4e-3, 2e-3, 1e-3])
     reference = simulate(model, 1.0, "irk", rtol=1e-12, atol=1e-12)
