@@ -92,8 +92,8 @@ def test_bounces_are_those_of_the_events():
         assert bounce.approach_speed == pytest.approx(other.approach_speed, rel=0.02)
     later = simulate(scenario.model, 1.0, "moreau", step=1e-3)
     gap = next(name for name in later.channels if name.endswith(".gap"))
-    # it does not float
-    assert np.max(np.abs(later[gap][-50:])) < 1e-12
+    # what has landed rests above the floor by what it falls in a step, at most
+    assert np.max(np.abs(later[gap][-50:])) < 0.51 * G * 1e-3**2
 
 
 def test_order_two_without_contacts():
