@@ -104,8 +104,8 @@ CONTENDERS = (
     *(Setting("irk", {"tableau": name}) for name in ("sdirk4", "gauss2", "radau3", "gauss3")),
 )
 """What `study iterations` compares."""
-WITHOUT_ERROR_CONTROL = ("moreau",)
-"""Methods that no tolerance tells how large their steps are."""
+TIME_STEPPING = "time stepping"
+"""Family of the methods whose steps follow from no tolerance where there are contacts."""
 
 
 def order_cases(methods: Iterable[str] | None = None) -> tuple[OrderCase, ...]:
@@ -130,7 +130,9 @@ def contenders(methods: Iterable[str] | None = None) -> tuple[Setting, ...]:
     """
     found = [setting for setting in CONTENDERS if setting.available]
     with_line = {setting.method for setting in found}
-    found += [Setting(name) for name in METHODS if name not in (*with_line, *WITHOUT_ERROR_CONTROL)]
+    found += [
+        Setting(name) for name, method in METHODS.items() if name not in with_line and method.family != TIME_STEPPING
+    ]
     chosen = _known(methods)
     return tuple(setting for setting in found if setting.method in chosen)
 
