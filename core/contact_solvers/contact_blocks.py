@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, vec
 
 WIDE = 6
 """Rows of a block: normal, two tangents, two torques against rolling, one against spinning; what is not there is 0."""
@@ -20,61 +19,103 @@ HEAD = 2
 """Integers before the coordinates: how many the gradients have, and how many the motions."""
 
 
-def block_wholes(most: int, n: int) -> int:
-    """Integers that the blocks of so many contacts may take, with n coordinates."""
-    return most * (2 + HEAD + 2 * n) + n
+SMALL = 28
+"""Coordinates that a contact of two free bodies in space has, with those that its motions have."""
 
 
-def block_reals(most: int, n: int) -> int:
+def block_wholes(most: int, coordinates: int) -> int:
+    """Integers that the blocks of so many contacts may take, with so many coordinates of gradients and motions."""
+    return most * (2 + HEAD + coordinates)
+
+
+def block_reals(most: int, coordinates: int) -> int:
     """Numbers that they may take."""
-    return most * (COUPLING + 2 * WIDE * n)
+    return most * (COUPLING + WIDE * coordinates)
 
 
 @internal
-def blocks_at(wholes: int, reals: int, most: int, n: int) -> Any:
-    """Both arrays at these addresses, of so many numbers."""
-    return ivec(wholes, most * (2 + HEAD + 2 * n) + n), vec(reals, most * (COUPLING + 2 * WIDE * n))
+def pack_block(
+    i: int, count: int, next_whole: int, next_real: int, gradients: Any, some: Any, width: int, motions: Any,
+    moved: Any, others: int, wholes: Any, reals: Any,
+) -> Any:  # fmt: skip
+    """The block of contact i of `count`, behind those before it: where the next one begins in `wholes` and `reals`;
+    (-1, -1) where there is too little room. wholes begins with the places of each contact in both arrays, so that the
+    first block begins at 2 count.
 
-
-@internal
-def pack_contacts(
-    count: int, n: int, rows: int, directions: Any, responses: Any, of_directions: Any, of_responses: Any,
-    wholes: Any, reals: Any,
-) -> None:  # fmt: skip
-    """The blocks of `count` contacts, whose rows are those of `directions` and `responses` (rows, n) with the entries
-    that `list_columns` has found: first that of each contact, then the second of each, and so on. wholes ends with room
-    for n marks, and begins with the places of each contact in both arrays."""
-    of, at, place = rows // count, 2 * count, 0
-    marks = wholes[len(wholes) - n :]
-    for j in range(n):
-        marks[j] = -1
-    for i in range(count):
-        wholes[i], wholes[count + i] = at, place
-        for k in range(COUPLING):
-            reals[place + k] = 0.0
-        for k in range(of):
-            r = k * count + i
-            for e in range(1, of_directions[r, 0] + 1):
-                j = of_directions[r, e]
-                for s in range(of):
-                    reals[place + WIDE * k + s] += directions[r, j] * responses[s * count + i, j]
-        first, at, place = at, at + HEAD, place + COUPLING
-        for part in range(2):
-            listed, values = (of_directions, directions) if part == 0 else (of_responses, responses)
-            width, stamp = 0, 2 * i + part
-            for k in range(of):
-                for e in range(1, listed[k * count + i, 0] + 1):
-                    j = listed[k * count + i, e]
-                    if marks[j] != stamp:
-                        marks[j] = stamp
-                        wholes[at + width] = j
-                        width += 1
+    gradients (WIDE, n) have entries at the first `width` of the coordinates `some`, motions (n, WIDE), those that unit
+    impulses cause, at the first `others` of `moved`, all of `some` among them.
+    """
+    most_wholes, most_reals = next_whole + HEAD + width + others, next_real + COUPLING + WIDE * (width + others)
+    if most_wholes > len(wholes) or most_reals > len(reals):
+        return -1, -1
+    wholes[i], wholes[count + i] = next_whole, next_real
+    for k in range(WIDE):
+        for s in range(WIDE):
+            product = 0.0
             for e in range(width):
-                for k in range(WIDE):
-                    reals[place + k] = values[k * count + i, wholes[at + e]] if k < of else 0.0
-                place += WIDE
-            wholes[first + part] = width
-            at += width
+                product += gradients[k, some[e]] * motions[some[e], s]
+            reals[next_real + WIDE * k + s] = product
+    at, place = next_whole + HEAD, next_real + COUPLING
+    wholes[next_whole], wholes[next_whole + 1] = 0, 0
+    for e in range(width):
+        j, any_entry = some[e], False
+        for k in range(WIDE):
+            reals[place + k] = gradients[k, j]
+            any_entry = any_entry or gradients[k, j] != 0.0
+        if any_entry:
+            wholes[at], at, place = j, at + 1, place + WIDE
+            wholes[next_whole] += 1
+    for e in range(others):
+        j, any_entry = moved[e], False
+        for k in range(WIDE):
+            reals[place + k] = motions[j, k]
+            any_entry = any_entry or motions[j, k] != 0.0
+        if any_entry:
+            wholes[at], at, place = j, at + 1, place + WIDE
+            wholes[next_whole + 1] += 1
+    return at, place
+
+
+@internal
+def coupling(i: int, count: int, wholes: Any, reals: Any, k: int) -> float:
+    """How an impulse along row k of contact i moves the rate of this row: its inverse mass."""
+    return float(reals[wholes[count + i] + (WIDE + 1) * k])
+
+
+@internal
+def block_rates(i: int, count: int, wholes: Any, reals: Any, x: Any, rates: Any) -> None:
+    """Products of the gradients of contact i with x (n,), to rates (WIDE,)."""
+    for k in range(WIDE):
+        rates[k] = 0.0
+    at, place = wholes[i], wholes[count + i]
+    _rates(wholes[at], at + HEAD, place + COUPLING, wholes, reals, x, rates)
+
+
+@internal
+def move_block(i: int, count: int, wholes: Any, reals: Any, steps: Any, x: Any) -> None:
+    """Add the motion that impulses `steps` (WIDE,) of contact i cause to x (n,)."""
+    at, place = wholes[i], wholes[count + i]
+    width = wholes[at]
+    _move(wholes[at + 1], at + HEAD + width, place + COUPLING + WIDE * width, wholes, reals, steps, x)
+
+
+@internal
+def normal_rate(i: int, count: int, wholes: Any, reals: Any, x: Any) -> float:
+    """Product of the gap's gradient of contact i with x (n,)."""
+    at, place, product = wholes[i], wholes[count + i] + COUPLING, 0.0
+    for e in range(wholes[at]):
+        product += reals[place + WIDE * e] * x[wholes[at + HEAD + e]]
+    return float(product)
+
+
+@internal
+def move_normal(i: int, count: int, wholes: Any, reals: Any, impulse: float, x: Any) -> None:
+    """Add the motion that a normal impulse of contact i causes to x (n,)."""
+    at = wholes[i]
+    width, others = wholes[at], wholes[at + 1]
+    place = wholes[count + i] + COUPLING + WIDE * width
+    for e in range(others):
+        x[wholes[at + HEAD + width + e]] += impulse * reals[place + WIDE * e]
 
 
 @internal
@@ -108,11 +149,15 @@ def sweep_contacts(
     count: int, tangents: int, stages: int, rows: int, wholes: Any, reals: Any, masses: Any, off: Any, arms: Any,
     p: Any, x: Any, local: Any,
 ) -> float:  # fmt: skip
-    """One sweep over all contacts (`row_sweeps.sweep_rows`); by how much a rate has changed most. local (2 WIDE,)."""
+    """One sweep over all contacts (`row_sweeps.sweep_rows`); by how much a rate has changed most, m/s. local
+    (2 WIDE,)."""
     rates, steps, change, of = local[:WIDE], local[WIDE:], 0.0, rows // count
     for i in range(count):
         at, place = wholes[i], wholes[count + i]
         width, others, moved = wholes[at], wholes[at + 1], False
+        if masses[i] == 0.0:
+            # no friction without a normal impulse
+            continue
         for k in range(WIDE):
             rates[k], steps[k] = off[k * count + i] if k < of else 0.0, 0.0
         _rates(width, at + HEAD, place + COUPLING, wholes, reals, x, rates)
@@ -151,7 +196,9 @@ def sweep_contacts(
                     steps[row] = step
                     for j in range(WIDE):
                         rates[j] += reals[place + WIDE * j + row] * step
-                    change = max(change, abs(step) * mass if s < 2 else abs(step) / radius * mass)
+                    moves = abs(step) * mass if s < 2 else abs(step) / radius * mass
+                    # of a turning motion that of a point as far off as the contact feels the body's inertia
+                    change = max(change, moves if stage < 2 else moves * np.sqrt(masses[i] / mass))
         if moved:
             _move(others, at + HEAD + width, place + COUPLING + WIDE * width, wholes, reals, steps, x)
     return change

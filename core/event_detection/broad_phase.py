@@ -36,7 +36,7 @@ from .balls import (
 from .contact_evaluation import BRACKET, HAPPENS
 from .contact_sleeping import DEEPLY, PLAINLY, show_elements, wake
 
-SKIN_WAYS = 16.0
+SKIN_WAYS = 4.0
 """A skin is as thick as so many ways that the ball goes in the present step,"""
 SKIN_SIZE = 0.05
 """and at least this share of its radius."""
@@ -99,6 +99,17 @@ def keep_watch(workspace: Any, method: Any, loop: Any) -> None:
         fits = moves[i, GONE] + _way_of_ball(loop, i, way) <= moves[i, SKIN]
     if not fits:
         _sweep(workspace, method, loop)
+
+
+@internal
+def begin_watch(workspace: Any, method: Any, loop: Any, h: float) -> None:
+    """Let the pairs sleep that are far from each other, where all are awake, before a step of about h (s)."""
+    if loop.n_balls == 0 or loop.may_sleep == 0 or ivec(loop.broad, MARKS)[VALID] != 0:
+        return
+    n, start, way = workspace.n_ext, history_row(workspace, method, 0), mat(loop.travel, 2, workspace.n_ext)[0]
+    for i in range(workspace.n):
+        way[i] = abs(h * start[n + i]) + abs(h * h * start[2 * n + i])
+    _sweep(workspace, method, loop)
 
 
 @internal

@@ -191,6 +191,44 @@ def gradient_alone(workspace: Any, loop: Any, k: int, row: int, out: Any) -> Non
 
 
 @internal
+def add_gradient(
+    workspace: Any, loop: Any, k: int, row: int, out: Any, mark: int, some: Any, marks: Any, count: int
+) -> int:  # fmt: skip
+    """Add the gradient of row `row`, one of contact k, to out (n,). Its coordinates that do not bear the mark get it in
+    marks (n,), and go to `some`, of which there are `count`: how many there are then. Before, `tell_gradients` for what
+    can be evaluated alone, `evaluate_tangent` for what cannot."""
+    if can_look(loop, k):
+        batch = probe_of(loop, k)
+        coord, rows = imat(batch.coord, batch.count, batch.ncoord), imat(batch.row, batch.count, batch.nrow)
+        values = vec(loop.probe_values, batch.n_values)
+        for e in range(batch.count):
+            for j in range(batch.nrow):
+                if rows[e, j] != row:
+                    continue
+                begin = (e * batch.nrow + j) * batch.ncoord
+                for i in range(batch.ncoord):
+                    count = _add(coord[e, i], values[begin + i], workspace.n, out, mark, some, marks, count)
+        return count
+    start, values = ivec(workspace.gradient_start, workspace.m_ext), vec(workspace.values, workspace.n_values)
+    columns, slots = ivec(workspace.gradient_col, start[row + 1]), ivec(workspace.gradient_slot, start[row + 1])
+    for e in range(start[row], start[row + 1]):
+        count = _add(columns[e], values[slots[e]], workspace.n, out, mark, some, marks, count)
+    return count
+
+
+@internal
+def _add(i: int, value: float, n: int, out: Any, mark: int, some: Any, marks: Any, count: int) -> int:
+    """Add a value to the coordinate i of out, and list this."""
+    if i >= n or value == 0.0:
+        return count
+    out[i] += value
+    if marks[i] == mark:
+        return count
+    marks[i], some[count] = mark, i
+    return count + 1
+
+
+@internal
 def can_look(loop: Any, k: int) -> bool:
     """True if contact k can be evaluated alone."""
     return bool(ivec(loop.near, NEAR_SIZE * (k + 1))[NEAR_SIZE * k + NEAR_KERNEL] != 0)

@@ -92,15 +92,14 @@ def _respond(instant: Any, workspace: Any, count: int) -> None:
         for j in range(n):
             responses[i, j] = rhs[j]
     some = ivec(instant.columns, n)
-    alone = scalars(instant).diagonal_only != 0
     for i in range(3 * count):
         entries = entries_of(directions[i], n, some)
-        for j in range(i if alone else 0, i + 1 if alone else 3 * count):
+        for j in range(3 * count):
             product = 0.0
             for e in range(entries):
                 product += directions[i, some[e]] * responses[j, some[e]]
             a[i, j] = product
-    for i in range(0 if alone else 3 * count):
+    for i in range(3 * count):
         for j in range(i):
             a[i, j] = a[j, i] = 0.5 * (a[i, j] + a[j, i])
     # a tangent that joints hold takes no friction
@@ -110,10 +109,9 @@ def _respond(instant: Any, workspace: Any, count: int) -> None:
     for i in range(count, 3 * count):
         if a[i, i] <= IMMOVABLE * largest:
             a[i, i] = 0.0
-            for j in range(0 if alone else 3 * count):
+            for j in range(3 * count):
                 a[i, j] = a[j, i] = 0.0
     for i in range(2 * count):
-        for j in range(i if alone else 0, i + 1 if alone else 2 * count):
+        for j in range(2 * count):
             plane[i, j] = a[i, j]
-    if not alone:
-        press_with_torques(instant, workspace, count)
+    press_with_torques(instant, workspace, count)

@@ -10,7 +10,7 @@ from ..assembly.evaluate import evaluate_energy, evaluate_power, evaluate_residu
 from ..assembly.structure_switch import take_structure
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
-from ..event_detection.contact_sleeping import look_at_all
+from ..event_detection.contact_sleeping import look_at_all, show_elements, show_pending
 from ..event_detection.crossings import remember
 from ..methods.history import history_time, recall, replace, restart
 from ..state.modes import MEMORY_SIZE, memories_at
@@ -81,9 +81,11 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
         begin_impulses(drive, workspace, method, loop)
         return SETTLED
     _keep(instant, workspace, False)
-    step = vec(loop.clock, CLOCK_SIZE)[STEP_SIZE]
+    step, pushing = vec(loop.clock, CLOCK_SIZE)[STEP_SIZE], vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
     # samples may have been asked for since the step that ended here
     recall(workspace, method, 0)
+    if pushing:
+        show_pending(workspace, drive.pending, drive.law)
     evaluate_residuals(workspace)
     modes = vec(instant.modes, workspace.n_contacts)
     for k in range(workspace.n_contacts):
@@ -94,7 +96,7 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
     handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
     counts[HERE] = here + 1 if t == handled_at else 1
     goals[HANDLED_AT] = t
-    scalars(instant).touched, pushing = 0, vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    scalars(instant).touched = 0
     scalars(instant).touched_in_space = scalars(instant).unshared_contact = scalars(instant).approaching_contact = 0
     begun, status = vec(loop.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
     if _any_force(drive, workspace):
@@ -116,6 +118,8 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
     if status == SETTLED and not pushing:
         status = find_pending(instant, drive, workspace, method, loop)
     workspace.kept, touched = 0, scalars(instant).touched
+    if pushing:
+        show_elements(workspace)
     if status != SETTLED:
         goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
         _put_back(instant, workspace, method, structure)
@@ -124,6 +128,8 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
         if many and call_part(instant.step_through, instant, drive, workspace, method) == SETTLED:
             return SETTLED
         return status
+    if pushing:
+        evaluate_residuals(workspace)
     if pushing and not begun:
         # what lies between two steps of impulses is between what they have left
         _go_on(workspace, method, loop)

@@ -3,15 +3,27 @@ about."""
 
 from typing import Any
 
+import numpy as np
+
+from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
+from ..assembly.redundant_reactions import analyze_equations
+from ..assembly.sticking_force import in_space
+from ..assembly.structure_switch import engage_modes
 from ..compiled.jit import internal
-from ..compiled.views import imat, ivec, mat, vec
-from ..contact_solvers.contact_blocks import blocks_at, pack_contacts
-from ..contact_solvers.row_sweeps import along, list_columns
-from ..state.modes import memories_at
+from ..compiled.views import ivec, vec
+from ..contact_solvers.contact_blocks import WIDE, block_rates, coupling, move_block
+from ..linalg.record import WANT_ROOM
+from ..rounding import IMMOVABLE
+from ..state.modes import CLOSED, OPEN, memories_at
+from ..state.modes import STICKS as STUCK
 from ..state.run_records import loop_at
-from .rates import masses
-from .records import SETTLED, call_part, clear, scalars, touching
-from .turning_rows import TURNING_ROWS, find_turning_rows
+from ..state.workspace_records import OK
+from .rates import read_all_rates
+from .records import SINGULAR_JOINTS, WANT_MEMORY, clear, scalars, touching
+from .row_blocks import blocks_of, find_blocks
+from .torques import resist_turning
+from .touching import tell_touching
+from .turning_rows import TURNING_ROWS
 from .zeno import near_level
 
 ROW_INVERSE, TAKES, BEFORE, OFF, P, ROW_ARM = range(6)
@@ -44,86 +56,85 @@ def rows_of(instant: Any, workspace: Any) -> int:
 @internal
 def open_rows(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Open the touching contacts, and find what impulses at them, and torques against turning, do to the motion."""
-    count, contacts = scalars(instant).count, ivec(instant.contacts, instant.most)
-    scalars(instant).diagonal_only = 1
-    status = call_part(instant.open_touching, instant, drive, workspace, method)
-    scalars(instant).diagonal_only = 0
-    if status != SETTLED:
-        return int(status)
+    count, contacts, loop = scalars(instant).count, ivec(instant.contacts, instant.most), loop_at(drive.loop)
+    memory = memories_at(workspace.memory, workspace.n_contacts)
     for i in range(count):
-        memories_at(workspace.memory, workspace.n_contacts)[contacts[i]].closed_gap = 0.0
+        k = contacts[i]
+        memory[k].mode, memory[k].slide_mode, memory[k].friction_ratio = OPEN, STUCK, 0.0
+        memory[k].closed_gap = 0.0
+        if in_space(workspace, k):
+            # directions and rates are to speak of the same tangents
+            memory[k].tangent_axis = 0.0
+    if engage_modes(workspace) != OK:
+        return WANT_MEMORY
+    # the rows of those that slid or stuck now tell both velocities
+    evaluate_residuals(workspace)
+    resist_turning(instant, workspace, count)
+    evaluate_tangent(workspace, 0.0, 0.0)
+    read_all_rates(instant, workspace)
+    code = analyze_equations(workspace, workspace.kkt_query)
+    if code != OK:
+        return WANT_MEMORY if code == WANT_ROOM else SINGULAR_JOINTS
+    for i in range(count):
+        memory[contacts[i]].mode = CLOSED
+    tell_touching(instant, workspace, loop)
     rows = rows_of(instant, workspace)
     arms = part(instant, rows, ROW_ARM)
     for r in range(count, 3 * count):
         arms[r] = vec(drive.friction, workspace.n_contacts)[contacts[r % count]]
-    if rows > 3 * count:
-        find_turning_rows(instant, workspace, loop_at(drive.loop), 3 * count, arms)
-    n, directions, responses = (
-        workspace.n,
-        mat(instant.directions, rows, workspace.n),
-        mat(instant.responses, rows, workspace.n),
-    )
-    list_columns(rows, n, directions, responses, instant.columns)
-    wholes, reals = blocks_at(instant.block_wholes, instant.block_reals, instant.most, n)
-    pack_contacts(
-        count, n, rows, directions, responses, imat(instant.columns, rows, n + 1),
-        imat(instant.columns + 8 * rows * (n + 1), rows, n + 1), wholes, reals,
-    )  # fmt: skip
-    return SETTLED
+    status = int(find_blocks(instant, workspace, loop, arms))
+    for i in range(count):
+        memory[contacts[i]].mode = OPEN
+    return status
 
 
 @internal
 def prepare_rows(instant: Any, workspace: Any, h: float) -> None:
     """Inverse masses and rates, and the impulses to begin with: most likely those of the last step, with the motion
     that they cause in `bounced` (n,)."""
-    contact = touching(instant)
-    count, rows, n, v = (
-        scalars(instant).count,
-        rows_of(instant, workspace),
-        workspace.n,
-        vec(workspace.v, workspace.n_ext),
-    )
-    directions, responses = mat(instant.directions, rows, n), mat(instant.responses, rows, n)
-    contacts, memory, x = (
-        ivec(instant.contacts, instant.most),
-        memories_at(workspace.memory, workspace.n_contacts),
-        vec(instant.bounced, n),
-    )
-    inverse, takes, rate, p = (
+    contact, memory = touching(instant), memories_at(workspace.memory, workspace.n_contacts)
+    count, rows, n = scalars(instant).count, rows_of(instant, workspace), workspace.n
+    contacts, v, x = ivec(instant.contacts, instant.most), vec(workspace.v, workspace.n_ext), vec(instant.bounced, n)
+    inverse, takes, rate, off, p = (
         part(instant, rows, ROW_INVERSE),
         part(instant, rows, TAKES),
         part(instant, rows, BEFORE),
+        part(instant, rows, OFF),
         part(instant, rows, P),
     )
     scale, contact_rows = vec(workspace.row_scale, workspace.m_ext), ivec(workspace.contact_rows, workspace.n_contacts)
-    level, largest = near_level(workspace, h), 0.0
+    level, held = near_level(workspace, h), IMMOVABLE * _read_inverse_masses(instant, workspace, inverse)
+    wholes, reals = blocks_of(instant)
+    rates, steps, largest = np.zeros(WIDE), np.zeros(WIDE), 0.0
     clear(x, n)
-    for r in range(rows):
-        i, block = r % count, r // count
-        k = contacts[i]
-        if block == 0:
-            rate[r] = contact[i].gap_rate
-        elif block == 1:
-            rate[r] = contact[i].sliding_rate
-        elif block == 2:
-            rate[r] = contact[i].sliding_rate2
-        else:
-            rate[r] = along(r, n, rows, instant.columns, directions, v)
-        inverse[r] = p[r] = 0.0
-        if block > 2 or _moves(instant, workspace, count, r):
-            inverse[r] = along(r, n, rows, instant.columns, directions, responses[r])
-        # what is near, but does not touch, stands here to be kept from overlapping
-        takes[r] = inverse[r] if contact[i].gap <= level * scale[contact_rows[k]] else 0.0
-        if takes[r] > 0.0:
-            largest = max(largest, abs(rate[r]))
-            p[r] = h * memory[k].step_force[block]
-            for j in range(n):
-                x[j] += p[r] * responses[r, j]
-        part(instant, rows, OFF)[r] = rate[r]
+    for i in range(count):
+        k, of_turning = contacts[i], rows > 3 * count
+        touches = contact[i].gap <= level * scale[contact_rows[k]]
+        if of_turning:
+            block_rates(i, count, wholes, reals, v, rates)
+        rates[0], rates[1], rates[2] = contact[i].gap_rate, contact[i].sliding_rate, contact[i].sliding_rate2
+        for block in range(rows // count):
+            r = block * count + i
+            rate[r] = off[r] = rates[block]
+            if 0 < block < 3 and inverse[r] <= held:
+                # a tangent without friction, or that joints hold
+                inverse[r] = 0.0
+            # what is near, but does not touch, stands here to be kept from overlapping
+            takes[r] = inverse[r] if touches else 0.0
+            p[r] = steps[block] = h * memory[k].step_force[block] if takes[r] > 0.0 else 0.0
+            if takes[r] > 0.0:
+                # (as in `sweep_contacts`)
+                largest = max(largest, abs(rate[r]) * (np.sqrt(inverse[i] / inverse[r]) if block > 2 else 1.0))
+        move_block(i, count, wholes, reals, steps, x)
     scalars(instant).largest_rate = largest
 
 
 @internal
-def _moves(instant: Any, workspace: Any, count: int, r: int) -> bool:
-    """False for a tangent without friction, or that joints hold."""
-    return bool(masses(instant, count)[r, r] > 0.0)
+def _read_inverse_masses(instant: Any, workspace: Any, inverse: Any) -> float:
+    """The rows' inverse masses; the largest one of a normal or a tangent."""
+    count, rows, largest = scalars(instant).count, rows_of(instant, workspace), 0.0
+    wholes, reals = blocks_of(instant)
+    for r in range(rows):
+        inverse[r] = coupling(r % count, count, wholes, reals, r // count)
+        largest = max(largest, inverse[r] if r < 3 * count else 0.0)
+    return largest

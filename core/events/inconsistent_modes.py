@@ -80,7 +80,6 @@ def _returns_at_once(instant: Any, drive: Any, workspace: Any, method: Any, loop
     mode, slide, ratio, axis = memory.mode, memory.slide_mode, memory.friction_ratio, memory.tangent_axis
     ivec(instant.contacts, instant.most)[0], scalars(instant).count = k, 1
     motion, jerks = contact.free_gap_acceleration, vec(instant.jerks, instant.most)
-    scalars(instant).diagonal_only = 0
     status = call_part(instant.open_touching, instant, drive, workspace, method)
     if status == SETTLED:
         status = SETTLED if call_accelerations(drive.accelerations, workspace) == OK else NO_ACCELERATIONS

@@ -10,7 +10,7 @@ from ..assembly.patterns import entries_of_few
 from ..compiled.image import Take, twin
 from ..compiled.jit import address_of
 from ..compiled.records import BlockRecord
-from ..contact_solvers.contact_blocks import block_reals, block_wholes
+from ..contact_solvers.contact_blocks import SMALL, block_reals, block_wholes
 from ..contact_solvers.directions import (
     FARTHEST_SIGNATURE,
     INDEPENDENT_SIGNATURE,
@@ -35,8 +35,19 @@ from .impact_law import strike
 from .impulse_rows import ROW_ROOM, TURNING_ROWS
 from .moreau_jean_step import push_apart
 from .prepare import use_modes
-from .records import INSTANT, PART_SIGNATURE, SCALARS, SOLVER_VECTORS, TOUCHING
+from .records import (
+    INSTANT,
+    OF_BLOCKS,
+    OF_CONTACTS,
+    OF_DECIDED,
+    OF_ELIMINATION,
+    PART_SIGNATURE,
+    SCALARS,
+    SOLVER_VECTORS,
+    TOUCHING,
+)
 from .resting import begin_rest
+from .row_blocks import opening_reals, opening_wholes
 from .zeno import step_through
 
 PARTS = {
@@ -63,47 +74,60 @@ def _functions(assembly: Assembly) -> dict[str, int]:
 
 
 class Instant:
-    """Scratch for the instants of a run with `assembly`: for so many touching contacts, and for so many numbers in the
-    elimination of the constraints' rows."""
+    """Scratch for the instants of a run with `assembly`.
 
-    def __init__(self, assembly: Assembly, most: int = FEW, rows_space: int = 0) -> None:
+    Parameters
+    ----------
+    most, decided : touching contacts that there is room for, and those for the problem of an instant that is decided at
+        once, whose matrices are dense; dimensionless.
+    rows_space : numbers in the elimination of the constraints' rows; dimensionless.
+    coordinates : that gradients and motions of a contact have in steps of impulses, on average; dimensionless.
+    """
+
+    def __init__(
+        self, assembly: Assembly, most: int = FEW, decided: int = FEW, rows_space: int = 0, coordinates: int = 0
+    ) -> None:
         self._assembly = assembly
         n, n_ext, m, contacts = assembly.n, assembly.n_extended, assembly.m + 1, max(len(assembly.contacts), 1)
         most = self.most = max(min(most, contacts), 1)
+        decided = self.decided = max(min(decided, contacts), 1)
+        self.coordinates = min(coordinates or SMALL, 2 * n)
         entries = entries_of_few(assembly, most)[1]
         space = self.rows_space = rows_space or 4 * (entries + n)
         # normals and tangents of so many contacts, and torques against turning
-        every = 3 * most
-        rows = every + TURNING_ROWS * most
-        work = max(independent_size(every, n), farthest_size(most), least_norm_size(2 * most, 2 * most, 1))
-        of_cones = dict.fromkeys(("nn", "nt", "tt"), most * most) | dict.fromkeys(VECTORS_OF_CONES, most)
+        every, rows = 3 * decided, (3 + TURNING_ROWS) * most
+        work = max(independent_size(every, n), farthest_size(decided), least_norm_size(2 * decided, 2 * decided, 1))
+        of_cones = dict.fromkeys(("nn", "nt", "tt"), decided * decided) | dict.fromkeys(VECTORS_OF_CONES, decided)
         self._cones = BlockRecord(
             CONES,
-            {**of_cones, "work": work_size(most)},
-            {"n": most, **(addresses() if assembly.contacts else dict.fromkeys(CALLED, 0))},
+            {**of_cones, "work": work_size(decided)},
+            {"n": decided, **(addresses() if assembly.contacts else dict.fromkeys(CALLED, 0))},
         )
         self._record = BlockRecord(
             INSTANT,
             {
                 **dict.fromkeys(("velocities", "bounced", "noise", "sum", "terms"), n_ext),
-                **dict.fromkeys(("some", "chosen", "order"), every),
+                **dict.fromkeys(("some", "chosen", "order"), 3 * most),
                 "contacts": most, "table": TOUCHING.itemsize // 8 * most, "scalars": SCALARS.itemsize // 8,
                 **dict.fromkeys(SOLVER_VECTORS, most),
-                "a": 4 * most**2, "matrix": 4 * most**2 + 4 * most, "work": work,
-                "directions": rows * n, "responses": rows * n, "sweeps": ROW_ROOM * rows + 2 * n,
-                "columns": 2 * rows * (n + 1),
-                "block_wholes": block_wholes(most, n), "block_reals": block_reals(most, n),
+                "a": 4 * decided**2, "matrix": 4 * decided**2 + 4 * decided, "work": work,
+                "directions": every * n, "responses": every * n, "columns": n + 1,
+                "sweeps": ROW_ROOM * rows + 2 * n,
+                "opening_wholes": opening_wholes(n, m), "opening_reals": opening_reals(n, m),
+                "block_wholes": block_wholes(most, self.coordinates),
+                "block_reals": block_reals(most, self.coordinates),
                 "kept_memory": contacts * MEMORY_SIZE, "kept_rate": RATE_SIZE, "kept_counters": COUNTERS_SIZE,
                 "modes": contacts, "unsettled": contacts, "massless_rates": contacts, "joint_rates": m,
                 "row_wholes": 6 * (n + m + 1) + 2 * space, "row_reals": n + m + 1 + 3 * space,
                 "space_a": every * every, "space_b": every, "space_p": every,
-                "pressing_a": every * every, "torques": most * n,
-                "space_room": every * every + 4 * every + friction_cones_size(most) + least_forces_size(most),
+                "pressing_a": every * every, "torques": decided * n,
+                "space_room": every * every + 4 * every + friction_cones_size(decided) + least_forces_size(decided),
                 "space_kept": every * every + 4 * every + 2,
                 "slots_work": min(n * n, n + entries_of_few(assembly, contacts)[0]),
             },
             {
-                "most": most, "work_size": work, "rows_space": space, "cones": self._cones.address,
+                "most": most, "most_decided": decided, "block_coordinates": self.coordinates, "work_size": work,
+                "rows_space": space, "cones": self._cones.address,
                 **_functions(assembly),
             },
         )  # fmt: skip
@@ -153,8 +177,21 @@ class Instant:
         return int(self._scalars["failed_contact"][0])
 
     def grown(self) -> "Instant":
-        """One with more room."""
-        return Instant(self._assembly, 2 * self.most, 2 * self.rows_space)
+        """One with more room of what there was too little."""
+        of = int(self._scalars["short_of"][0])
+        return self.with_room(
+            2 * self.most if of == OF_CONTACTS else self.most,
+            max(2 * self.decided, len(self.touching)) if of == OF_DECIDED else self.decided,
+            2 * self.rows_space if of == OF_ELIMINATION else self.rows_space,
+            2 * self.coordinates if of == OF_BLOCKS else self.coordinates,
+        )
+
+    def with_room(self, most: int, decided: int, rows_space: int = 0, coordinates: int = 0) -> "Instant":
+        """One with room as the parameters of the class say, but at least this one's."""
+        return Instant(
+            self._assembly, max(most, self.most), max(decided, self.decided), max(rows_space, self.rows_space),
+            max(coordinates, self.coordinates),
+        )  # fmt: skip
 
     def scratch(self) -> list[NDArray[Any]]:
         """The memory, whose content decides nothing."""

@@ -17,7 +17,17 @@ from .friction_rows import LOOSEST_RANK, RANK_OF_MANY
 from .impact import impact
 from .mode_switch import report_modes, take_modes
 from .reading import largest_acceleration, read_before
-from .records import NO_ACCELERATIONS, REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANTS_ROOM, call_part, scalars, touching
+from .records import (
+    NO_ACCELERATIONS,
+    OF_DECIDED,
+    REPEATED_ROWS,
+    SETTLED,
+    SINGULAR_MATRIX,
+    WANTS_ROOM,
+    call_part,
+    scalars,
+    touching,
+)
 from .residual_approach import take_away_left
 from .touching import find_touching, looks_again, read_rates, read_values
 
@@ -27,6 +37,9 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
     """Impacts, forces, and what they mean."""
     contact = touching(instant)
     if not find_touching(instant, drive, workspace):
+        return WANTS_ROOM
+    if scalars(instant).count > instant.most_decided:
+        scalars(instant).short_of = OF_DECIDED
         return WANTS_ROOM
     read_before(instant, drive, workspace)
     read_values(instant, workspace)
@@ -56,7 +69,6 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
         contact[i].least_sliding_speed = (
             vec(drive.rest_ratio, workspace.n_contacts)[k] * rate_size(workspace, k) if crowded else 0.0
         )
-    scalars(instant).diagonal_only = 0
     status = call_part(instant.open_touching, instant, drive, workspace, method)
     if status != SETTLED:
         return status

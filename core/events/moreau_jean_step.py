@@ -13,25 +13,27 @@ import numpy as np
 from ..assembly.evaluate import evaluate_energy
 from ..assembly.levels import position_level
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
-from ..contact_solvers.contact_blocks import blocks_at
-from ..contact_solvers.row_sweeps import along, press_apart, sweep_rows
+from ..compiled.views import ivec, vec
+from ..contact_solvers.contact_blocks import WIDE, block_rates
+from ..contact_solvers.row_sweeps import press_apart, sweep_rows
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, memories_at
 from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, PUSHED_FROM, PUSHES, PUSHES_LEFT, call_accelerations, loop_at
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from .constraint_projection import meet_constraints
+from .constraint_projection import meet_positions, meet_rates
 from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows, part, prepare_rows, room, rows_of
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
 from .report import report
+from .row_blocks import blocks_of
 from .touching import find_touching
 from .zeno import end_pushing, only_impulses
 
-TOLERANCE, SWEEPS = 1e-7, 1000
-"""Sweeps end when no rate changes by more than this part of the largest there was, or after so many."""
-SHIFTS, SHIFT_TURNS = 3, 30
-"""Looks at gaps that are still negative, and turns for each."""
+TOLERANCE = 1e-7
+"""Sweeps end when no rate changes by more than this part of the largest there was, or after `most_sweeps` of DRIVE."""
+SHIFTS, SHIFT_TURNS, SHIFT_PART = 2, 30, 1e-3
+"""Shifts of what overlaps, each along the normals before it; turns for each, and part of the deepest overlap that it
+may leave, since it is known to first order only."""
 FEW = 5.0
 """Steps within which what flies off must not be back, or it is no bounce."""
 QUIET, QUIET_PART = 6, 0.125
@@ -55,7 +57,7 @@ def push_apart(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     _bounce(instant, drive, workspace, h)
     evaluate_energy(workspace)
     before, kinetic = energy[0] + energy[1] + energy[2], energy[0]
-    _push(instant, workspace, h)
+    _push(instant, drive, workspace, h)
     changed, lost = _record(instant, drive, workspace, h, t)
     if drive.input_account >= 0:
         evaluate_energy(workspace)
@@ -157,7 +159,7 @@ def _bounce(instant: Any, drive: Any, workspace: Any, h: float) -> None:
 
 
 @internal
-def _push(instant: Any, workspace: Any, h: float) -> None:
+def _push(instant: Any, drive: Any, workspace: Any, h: float) -> None:
     """Impulses of all rows; the velocities change by them, and the positions by half of h (s) of that."""
     count, rows, n, x = (
         scalars(instant).count,
@@ -166,12 +168,12 @@ def _push(instant: Any, workspace: Any, h: float) -> None:
         vec(instant.bounced, workspace.n),
     )
     v, q, changes = vec(workspace.v, workspace.n_ext), vec(workspace.q, workspace.n_ext), vec(instant.velocities, n)
-    wholes, reals = blocks_at(instant.block_wholes, instant.block_reals, instant.most, n)
+    wholes, reals = blocks_of(instant)
     scalars(instant).sweeps = sweep_rows(
         count, 2, rows > 3 * count, rows, n, wholes, reals,
         part(instant, rows, TAKES), part(instant, rows, OFF), part(instant, rows, ROW_ARM), part(instant, rows, P), x,
         room(instant, rows, n),
-        TOLERANCE * scalars(instant).largest_rate, SWEEPS,
+        TOLERANCE * scalars(instant).largest_rate, drive.most_sweeps,
     )  # fmt: skip
     for j in range(n):
         v[j] += x[j]
@@ -184,28 +186,19 @@ def _record(instant: Any, drive: Any, workspace: Any, h: float, t: float) -> Any
     """Impulses to the contacts' memories, bounces to the events. (True if a contact has come, gone or bounced; what all
     impulses have taken of the energy, J: half of each times the sum of its rates before and after.)"""
     contact = touching(instant)
-    count, rows, n, x = (
-        scalars(instant).count,
-        rows_of(instant, workspace),
-        workspace.n,
-        vec(instant.bounced, workspace.n),
-    )
-    directions, contacts, rate, p = (
-        mat(instant.directions, rows, n),
-        ivec(instant.contacts, instant.most),
-        part(instant, rows, BEFORE),
-        part(instant, rows, P),
-    )
-    changed, total = False, 0.0
+    count, rows, x = scalars(instant).count, rows_of(instant, workspace), vec(instant.bounced, workspace.n)
+    contacts, rate, p = ivec(instant.contacts, instant.most), part(instant, rows, BEFORE), part(instant, rows, P)
+    wholes, reals = blocks_of(instant)
+    changed, total, moved = False, 0.0, np.zeros(WIDE)
     for i in range(count):
         k, lost, after = contacts[i], 0.0, rate[i]
         memory = memories_at(workspace.memory, workspace.n_contacts)[k]
         changed = changed or (p[i] > 0.0) != (memory.step_force[0] > 0.0) or contact[i].comes_to_rest != 0.0
+        block_rates(i, count, wholes, reals, x, moved)
         for block in range(rows // count):
             r = block * count + i
-            moved = along(r, n, rows, instant.columns, directions, x)
-            after = rate[i] + moved if block == 0 else after
-            lost -= p[r] * (rate[r] + 0.5 * moved)
+            after = rate[i] + moved[block] if block == 0 else after
+            lost -= p[r] * (rate[r] + 0.5 * moved[block])
             memory.step_force[block] = p[r] / h if h > 0.0 else 0.0
         memory.impulse_jump += p[i]
         contact[i].impact_loss = lost
@@ -245,8 +238,9 @@ def _close_overlaps(instant: Any, workspace: Any) -> bool:
         ivec(instant.contacts, instant.most),
     )
     contact_rows, level = ivec(workspace.contact_rows, workspace.n_contacts), GAP_ROUNDING * position_level(workspace)
+    wholes, reals = blocks_of(instant)
     for turn in range(SHIFTS + 1):
-        if not meet_constraints(workspace):
+        if not meet_positions(workspace):
             return False
         worst, least = 0.0, np.inf
         for i in range(count):
@@ -256,9 +250,9 @@ def _close_overlaps(instant: Any, workspace: Any) -> bool:
         if worst <= 0.0 or turn == SHIFTS:
             break
         press_apart(
-            count, rows, n, instant.directions, instant.responses, instant.columns, part(instant, rows, ROW_INVERSE),
-            off, part(instant, rows, BEFORE), x, room(instant, rows, n), 0.1 * level * least, SHIFT_TURNS,
+            count, rows, n, wholes, reals, part(instant, rows, ROW_INVERSE), off, part(instant, rows, BEFORE), x,
+            room(instant, rows, n), max(0.1 * level * least, SHIFT_PART * worst), SHIFT_TURNS,
         )  # fmt: skip
         for j in range(n):
             vec(workspace.q, workspace.n_ext)[j] += x[j]
-    return True
+    return bool(meet_rates(workspace))

@@ -28,7 +28,7 @@ from ..state.workspace_records import (
     SENSITIVITY,
     structure_at,
 )
-from .records import REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANTS_ROOM
+from .records import OF_ELIMINATION, REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANTS_ROOM, scalars
 
 
 @internal
@@ -61,6 +61,7 @@ def use_modes(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
 def _choose_partition(instant: Any, workspace: Any) -> int:
     rank = rank_of(instant, workspace, RANK_TOLERANCE)
     if rank < 0:
+        scalars(instant).short_of = OF_ELIMINATION
         return WANTS_ROOM
     if rank < workspace.m_act:
         return REPEATED_ROWS

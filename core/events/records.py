@@ -79,10 +79,10 @@ SCALARS = np.dtype(
             "without_restitution",       # 1: impacts are without restitution where `negligible_bounce` says so
             "contact_torques",           # 1: forces of contacts have torques against turning with them
             "touched", "touched_in_space",  # contacts that touch, once the instant has been decided
-            "diagonal_only",             # 1: of the inverse masses of what is opened the diagonal alone is wanted
             "in_rounds",                 # 1: contacts were struck one round after another (`impact_retries.py`)
             "unshared_contact",          # number, from 1 on, of one whose load was not shared (`rates.py`); 0: none
             "approaching_contact",       # the same where an approach has been left (`residual_approach.py`)
+            "short_of",                  # what there is too little room of (`OF_CONTACTS` ...)
         )
     ]
     + [
@@ -106,6 +106,7 @@ INSTANT = np.dtype(
         (name, np.int64)
         for name in (
             "most",                      # touching contacts that there is room for
+            "most_decided",              # and for the problem of an instant that is decided at once
             # addresses of these functions
             "open_touching", "strike", "begin_rest", "find_forces", "keep", "use_modes", "settle_forces", "push_apart",
             "step_through",
@@ -114,8 +115,9 @@ INSTANT = np.dtype(
             "contacts",                  # (most,) int64: which touch
             "table", "scalars",          # (most,) TOUCHING, (1,) SCALARS
             *SOLVER_VECTORS,
-            "a",                         # (2 most, 2 most) float64: inverse effective masses, normals first
-            # (2 most, n) float64, in space (6 most, n): gradients, and the motions that unit impulses cause
+            # (2 most_decided, 2 most_decided) float64: inverse effective masses, normals first
+            "a",
+            # (3 most_decided, n) float64: gradients, and the motions that unit impulses cause
             "directions", "responses",
             "some", "chosen", "order",   # (2 most,) int64, in space (3 most,)
             "kept_memory",               # (n_contacts, MEMORY_SIZE) float64
@@ -123,7 +125,7 @@ INSTANT = np.dtype(
             "velocities", "bounced",     # (n_ext,) float64
             "noise", "sum", "terms",     # (n_ext,) float64
             "joint_rates",               # (m_ext,) float64
-            "matrix",                    # (2 most, 2 most + 2) float64
+            "matrix",                    # (2 most_decided, 2 most_decided + 2) float64
             "work", "work_size",         # float64
             "row_wholes", "row_reals",   # int64 and float64: see `prepare.py`
             "rows_space",
@@ -131,11 +133,14 @@ INSTANT = np.dtype(
             "modes",                     # (n_contacts,) float64: before the instant
             "unsettled",                 # (n_contacts,) int64
             "massless_rates",            # (n_contacts,) float64
-            # in space: inverse effective masses (3 most, 3 most), motion and forces (3 most,), room for their solution
+            # in space: inverse effective masses, motion and forces of 3 most_decided rows, room for their solution
             "space_a", "space_b", "space_p", "space_room", "pressing_a", "torques",
             "space_kept",                # the last problem that was solved, and its forces (`rates.py`)
-            "sweeps", "columns",         # room for `moreau_jean_step.py`: float64 and int64
-            "block_wholes", "block_reals",  # and for `contact_solvers/contact_blocks.py`
+            "columns",                   # (n,) int64
+            "sweeps",                    # room for `moreau_jean_step.py`
+            "opening_wholes", "opening_reals",  # and for `row_blocks.py`
+            # blocks of `contact_solvers/contact_blocks.py`, for this many coordinates of each contact
+            "block_wholes", "block_reals", "block_coordinates",
         )
     ]
 )  # fmt: skip
@@ -146,6 +151,9 @@ call_part = caller(PART_SIGNATURE)
 compiled once and not again inside each caller."""
 instant_at = record_view(INSTANT_TYPE)
 _touching_at, _scalars_at = records_view(types.from_dtype(TOUCHING)), record_view(types.from_dtype(SCALARS))
+
+# what there is too little room of, where an instant wants some
+OF_ELIMINATION, OF_CONTACTS, OF_DECIDED, OF_BLOCKS = range(4)
 
 # what settling an instant returns
 SETTLED = 0

@@ -19,19 +19,13 @@ from .records import clear, scalars, touching
 
 
 @internal
-def find_torques(instant: Any, workspace: Any, loop: Any, count: int) -> None:
-    """Of the touching contacts, which are open and whose residuals have been evaluated: the axes that their tangents
-    are counted from, and whether they resist turning; then the residual by their normal forces, to `torques`."""
+def resist_turning(instant: Any, workspace: Any, count: int) -> None:
+    """Which of the touching contacts, which are open and whose residuals have been evaluated, resist turning, and the
+    axes that their tangents are counted from."""
     contacts, monitor, turns = (
         ivec(instant.contacts, instant.most),
         vec(workspace.monitor, 2 * workspace.n_contacts),
         vec(instant.turns, instant.most),
-    )
-    memory, lam = memories_at(workspace.memory, workspace.n_contacts), vec(workspace.lam, workspace.m_ext)
-    rows, torques, r = (
-        ivec(workspace.contact_rows, workspace.n_contacts),
-        mat(instant.torques, count, workspace.n),
-        vec(workspace.r, workspace.n_ext),
     )
     scalars(instant).contact_torques = 0
     for i in range(count):
@@ -41,6 +35,19 @@ def find_torques(instant: Any, workspace: Any, loop: Any, count: int) -> None:
         touching(instant)[i].tangent_axis = says - TURNS_HARD * turns[i]
         if turns[i] != 0.0:
             scalars(instant).contact_torques = 1
+
+
+@internal
+def find_torques(instant: Any, workspace: Any, loop: Any, count: int) -> None:
+    """`resist_turning`, and the residual by the normal forces of contacts that do, to `torques`."""
+    contacts, turns = ivec(instant.contacts, instant.most), vec(instant.turns, instant.most)
+    memory, lam = memories_at(workspace.memory, workspace.n_contacts), vec(workspace.lam, workspace.m_ext)
+    rows, torques, r = (
+        ivec(workspace.contact_rows, workspace.n_contacts),
+        mat(instant.torques, count, workspace.n),
+        vec(workspace.r, workspace.n_ext),
+    )
+    resist_turning(instant, workspace, count)
     if scalars(instant).contact_torques == 0:
         return
     for i in range(count):

@@ -16,7 +16,7 @@ from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATIO
 from ..state.modes import CLOSED, STICKS, memories_at
 from ..state.run_records import COUNTS_SIZE, HERE
 from .impact_law_codes import AT_MASSLESS, BY_FORCE
-from .records import IMMOVABLE_CONTACT, SETTLED, delassus, scalars, touching
+from .records import IMMOVABLE_CONTACT, OF_CONTACTS, SETTLED, delassus, scalars, touching
 
 
 @internal
@@ -40,6 +40,7 @@ def find_touching(instant: Any, drive: Any, workspace: Any) -> bool:
             continue
         if pending[k] != 0 or memory[k].mode == CLOSED or abs(phi[rows[k]]) <= level * scale[rows[k]]:
             if count == instant.most:
+                scalars(instant).short_of = OF_CONTACTS
                 return False
             contacts[count], touching(instant)[count].companion = k, companion[k]
             count += 1

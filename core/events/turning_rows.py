@@ -9,14 +9,12 @@ shape is held against turning within the step, whichever way its load would turn
 import math
 from typing import Any
 
-from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import ivec, vec
 from ..contacts.normal3d import PAIR_SIZE, pair_of
 from ..contacts.turning3d import FRICTION_RADIUS, ROLLING, SPINNING, turning_gradient
 from ..event_detection.contact_evaluation import probe_of
 from ..model.rotation3d import cross, times
-from .records import clear, scalars
 
 TURNING_ROWS = 3
 
@@ -35,31 +33,28 @@ def axes_of_contact(coord: Any, gradient: Any, n: int) -> Any:
 
 
 @internal
-def find_turning_rows(instant: Any, workspace: Any, loop: Any, first: int, arms: Any) -> None:
-    """Gradients of the angular velocities of the touching contacts, to `directions` from row `first` on, the motions
-    that unit torques cause, to `responses`, and rho and sigma or -r, m, to arms (rows,). Zeros where nothing
-    resists."""
-    count, n, rhs = scalars(instant).count, workspace.n, vec(workspace.rhs, workspace.n + workspace.m_act)
-    rows = first + TURNING_ROWS * count
-    directions, responses = mat(instant.directions, rows, n), mat(instant.responses, rows, n)
-    for i in range(count):
-        k, turns = ivec(instant.contacts, instant.most)[i], vec(instant.turns, instant.most)[i] != 0.0
-        batch = probe_of(loop, k)
-        coord, par = ivec(batch.coord, PAIR_SIZE), vec(batch.par, FRICTION_RADIUS + 1)
-        for block in range(TURNING_ROWS):
-            row = first + block * count + i
-            arms[row] = (par[ROLLING] if block < 2 else par[SPINNING] - par[FRICTION_RADIUS]) if turns else 0.0
-            clear(directions[row], n)
-            clear(responses[row], n)
-            if arms[row] == 0.0:
-                continue
-            a, b, c = axes_of_contact(coord, directions[i], n)
-            axis = a if block == 0 else b if block == 1 else c
-            turning_gradient(vec(workspace.q, workspace.n_ext), coord, pair_of(batch, 0), axis, n, directions[row])
-            for j in range(n):
-                rhs[j] = directions[row, j]
-            for j in range(workspace.m_act):
-                rhs[n + j] = 0.0
-            solve_equations(workspace, workspace.kkt_query)
-            for j in range(n):
-                responses[row, j] = rhs[j]
+def add_turning_rows(
+    workspace: Any, loop: Any, k: int, i: int, count: int, turns: bool, arms: Any, gradients: Any, some: Any,
+    marks: Any, width: int,
+) -> int:  # fmt: skip
+    """Gradients of the angular velocity of contact k, the i-th of `count` that touch, after its gap's and tangents' in
+    gradients (rows of a contact, n), and rho and sigma or -r, m, to its places in arms (rows,); zeros where nothing
+    resists. The coordinates to `some`, of which there are `width`: how many there are then."""
+    batch = probe_of(loop, k)
+    coord, par = ivec(batch.coord, PAIR_SIZE), vec(batch.par, FRICTION_RADIUS + 1)
+    for block in range(TURNING_ROWS):
+        arm = (par[ROLLING] if block < 2 else par[SPINNING] - par[FRICTION_RADIUS]) if turns else 0.0
+        arms[(3 + block) * count + i] = arm
+        if arm == 0.0:
+            continue
+        a, b, c = axes_of_contact(coord, gradients[0], workspace.n)
+        axis = a if block == 0 else b if block == 1 else c
+        turning_gradient(
+            vec(workspace.q, workspace.n_ext), coord, pair_of(batch, 0), axis, workspace.n, gradients[3 + block]
+        )
+        for e in range(PAIR_SIZE):
+            j = coord[e]
+            if j < workspace.n and marks[j] != i:
+                marks[j], some[width] = i, j
+                width += 1
+    return width

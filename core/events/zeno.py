@@ -86,7 +86,7 @@ def _size(workspace: Any) -> float:
 @internal
 def only_impulses(loop: Any) -> bool:
     """True if all steps of the run are steps of impulses (`method="moreau"`), and none looks for events."""
-    return bool(vec(loop.clock, CLOCK_SIZE)[PUSHES] == np.inf)
+    return bool(loop.only_impulses != 0)
 
 
 @internal

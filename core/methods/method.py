@@ -89,6 +89,8 @@ class Formula:
     """True if its error is the difference to an embedded formula, in all coordinates whether they depend or not."""
     impulses: bool = False
     """True if the contacts of a whole run are impulses of its steps, and no events are located."""
+    sweeps: int = 1000
+    """Sweeps over the contacts, at most, in a step of impulses."""
     exact: bool = True
     """True if the steps meet the constraints at all levels; then samples between steps are made to meet them too."""
 

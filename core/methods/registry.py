@@ -1,6 +1,7 @@
 """The methods by name: their step, their options and how much history they need."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..errors import ModelError
@@ -74,12 +75,12 @@ def _irk(name: str) -> Formula:
     return _coupled(TABLEAUS[name])
 
 
-def _coupled(tableau: Tableau, impulses: bool = False) -> Formula:
+def _coupled(tableau: Tableau) -> Formula:
     parameters = (len(tableau.b), float(tableau.stiffly_accurate), tableau.order_of_error)
     stages = (*tableau.c, 1.0)
     return Formula(
         irk_step, 0, parameters, 1, stages, newton_tolerance=FINE, weights=tableau.data(),
-        outer_loops=("newton", "simple"), impulses=impulses,
+        outer_loops=("newton", "simple"),
     )  # fmt: skip
 
 
@@ -164,8 +165,8 @@ METHODS = {
             "moreau",
             "Moreau-Jean time stepping: contacts as impulses of fixed steps, without events; order 1, for crowds of "
             "contacts; smooth motion by the implicit midpoint rule",
-            {},
-            lambda o: _coupled(MIDPOINT, impulses=True),
+            {"sweeps": Option(100, 1, 100_000, "sweeps over the contacts of a step, at most", integer=True)},
+            lambda o: replace(_coupled(MIDPOINT), impulses=True, sweeps=int(o["sweeps"])),
             family="time stepping",
         ),
         *COMPARISON_METHODS,

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from ..assembly.partition import prepare
 from ..assembly.workspace import all_tangents
 from ..errors import ConsistencyError
-from ..events.instant import Instant
 from ..laws import ForceLaw
 from ..linalg import SingularMatrixError
 from ..multibody_model import Model
@@ -105,8 +104,9 @@ def _make_room(sim: Any) -> None:
     """Room for more than the rehearsal has needed: there is nobody to give it later."""
     drive: Drive = sim.drive
     if sim.assembly.contacts:
-        rows_space = ROOMS * drive.instant.rows_space
-        drive.instant = Instant(sim.assembly, max(len(sim.assembly.contacts), drive.instant.most), rows_space)
+        every = len(sim.assembly.contacts)
+        decided = drive.instant.decided if sim.formula.impulses else every
+        drive.instant = drive.instant.with_room(every, decided, ROOMS * drive.instant.rows_space, 2 * sim.assembly.n)
         drive.record.set_size("instant", drive.instant.address)
     workspace, slots = sim.workspace, sim.workspace.slots
     slots.ask(ROOMS)

@@ -171,6 +171,7 @@ class Drive:
                 "accept": address_of(accept, ACCEPT_SIGNATURE),
                 "write_sample": address_of(write_sample, SAMPLE_SIGNATURE),
                 "accelerations": address_of(solve_accelerations, ACCELERATIONS_SIGNATURE),
+                "most_sweeps": sim.formula.sweeps,
                 "input_account": assembly.work_index("input") if "input" in assembly.work_names else -1,
             },
         )  # fmt: skip
@@ -259,8 +260,8 @@ class Drive:
 
     def open(self, contacts: list[int]) -> int:
         """Open these contacts at the current point, and find how impulses at them move each other: a status."""
-        while len(contacts) > self.instant.most:
-            self.give_room()
+        if len(contacts) > self.instant.decided:
+            self._use_instant(self.instant.with_room(len(contacts), len(contacts)))
         self.instant.touching = contacts
         return int(open_now(self._record.record))
 
@@ -271,8 +272,11 @@ class Drive:
 
     def give_room(self) -> None:
         """More room for the instants of this run."""
-        self.instant = self.instant.grown()
-        self._record.set_size("instant", self.instant.address)
+        self._use_instant(self.instant.grown())
+
+    def _use_instant(self, instant: Instant) -> None:
+        self.instant = instant
+        self._record.set_size("instant", instant.address)
 
     def take_pending(self) -> list[int]:
         """The contacts with events that are left to settle."""

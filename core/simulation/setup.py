@@ -44,7 +44,6 @@ from ..state.run_records import (
     LOG_COLUMNS,
     LOOP,
     MAX_STEP,
-    PUSHES,
     REPAIRED_AT,
     STOP_TIME,
     WATCH,
@@ -96,10 +95,8 @@ def build_method(formula: Formula, settings: Settings, assembly: Assembly, state
     return ArrayRecord(METHOD, arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
 
-def _set_clock(
-    clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float, impulses: bool
-) -> None:
-    """What the time loop knows about steps before the first one (`records.py`); whether all of them have `impulses`."""
+def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float) -> None:
+    """What the time loop knows about steps before the first one (`records.py`)."""
     clock[FIXED_STEP] = settings.step or 0.0
     clock[LARGEST_GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
     controller = CONTROLLERS[settings.controller]
@@ -108,7 +105,6 @@ def _set_clock(
     clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
     clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
     clock[REPAIRED_AT] = -math.inf
-    clock[PUSHES] = math.inf if impulses else 0.0
 
 
 def build_loop(
@@ -125,7 +121,7 @@ def build_loop(
     balls = build_balls(assembly)
     clock, watch = workspace.state["clock"][0], workspace.state["watch"][0]
     impulses = formula.impulses and bool(assembly.contacts)
-    _set_clock(clock, formula, settings, assembly.longest_step, impulses)
+    _set_clock(clock, formula, settings, assembly.longest_step)
     starter, fine_starter = STARTER if settings.step is None else FINE_STARTER, FINE_STARTER
     if impulses:
         starter = fine_starter = formula.step
@@ -152,6 +148,7 @@ def build_loop(
             "fine_starter": step_address(fine_starter),
             "rows": formula.rows,
             "capacity": capacity,
+            "only_impulses": int(impulses),
             "may_sleep": 0,
             "n_balls": len(balls["balls"]),
             "stride": max(int(record), 1),

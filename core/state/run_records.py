@@ -21,6 +21,7 @@ LOOP = np.dtype(
             "near", "probes",                   # (n_contacts, NEAR_SIZE) int64, and a BATCH for each contact
             *(f"probe_{name}" for name in ("q", "v", "a", "r", "lam", "phi", "phid", "phidd", "monitor", "sleeping")),
             "probe_values", "probe_places", "probe_nowhere",  # and where the entries of a contact's tangent go
+            "only_impulses",                    # 1: all steps of the run are steps of impulses
             "may_sleep",                        # 1: contacts may fall asleep (`contact_sleeping.py`)
             "margin",                           # (n_contacts,) float64: of those that do
             "travel",                           # (2, n_ext) float64: bounds of the coordinates' ways within a step
@@ -123,6 +124,7 @@ DRIVE = np.dtype(
             "guard",                                  # (GUARD_SIZE,) float64: of `Progress`
             "breakpoints", "n_breakpoints", "pass_breakpoint",  # the last: address of a function
             "joint_rows",                             # rows of Phi that are no contacts'
+            "most_sweeps",                            # over the contacts, in a step of impulses
             "input_account",                          # index in v of the work of driven constraints; -1: there is none
             # of each contact
             "law",                                    # (n_contacts,) int64: how an impact is solved

@@ -11,13 +11,14 @@ import numpy as np
 
 from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
 from ..compiled.views import ivec, vec
+from ..event_detection.broad_phase import begin_watch
 from ..event_detection.contact_sleeping import wake_all
 from ..event_detection.event_search import locate
 from ..event_detection.repivoting import orientation
 from ..events.event_handling import go_on_behind, settle
 from ..events.inconsistent_modes import find_unsettled
 from ..events.moved_surfaces import find_moved
-from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at, scalars
+from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at
 from ..events.zeno import only_impulses, without_impulse
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
@@ -49,6 +50,7 @@ from ..state.run_records import (
     REPARTITION,
     SETTLE,
     STATUS,
+    STEP_SIZE,
     STOP_TIME,
     TARGET_TIME,
     TRIAL_STEP,
@@ -104,6 +106,8 @@ def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> 
     code = OK if counts[REMEDY] == 0 else call_recover(drive.recover, drive, OK)
     while code == OK:
         loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
+        clock = vec(loop.clock, CLOCK_SIZE)
+        begin_watch(workspace, method, loop, max(clock[STEP_SIZE], clock[PUSH_STEP]))
         code = _drive_on(drive, workspace, method, loop, hold, last)
         loop.may_sleep = 0
         # whoever builds what is wanted does not look at gaps, and comes back at once
@@ -247,7 +251,6 @@ def without_impulse_now(drive: Any) -> int:
 def open_now(drive: Any) -> int:
     """`open_touching` at the current point, for Python."""
     instant = instant_at(drive.instant)
-    scalars(instant).diagonal_only = 0
     return call_part(instant.open_touching, instant, drive, workspace_at(drive.workspace), method_at(drive.method))
 
 

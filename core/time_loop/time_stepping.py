@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..event_detection.broad_phase import keep_watch
 from ..event_detection.contact_evaluation import set_travel
-from ..event_detection.contact_sleeping import sleeps_on
+from ..event_detection.contact_sleeping import show_elements, show_pending, sleeps_on
 from ..event_detection.trial_steps import make_trial
 from ..events.impact_law_codes import BY_FORCE
 from ..events.zeno import any_force_law, begin_impulses, end_pushing, near_level, only_impulses
@@ -67,6 +68,7 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     least, rows = SHORTEST * min(clock[PUSH_STEP], remaining), loop.rows
     # a formula that begins with the accelerations of the newest row would begin with those of the contacts' mean forces
     loop.rows = ONE_STEP
+    show_pending(workspace, drive.pending, drive.law)
     while True:
         recall(workspace, method, 0)
         vec(drive.last_trial, 1)[0] = -1.0
@@ -75,8 +77,10 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
             break
         h *= 0.25
     loop.rows = rows
+    show_elements(workspace)
     if status != OK or not error[0] <= 1.0:
         return STEP_TOO_SMALL if status == OK else status
+    evaluate_residuals(workspace)
     a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
     for i in range(workspace.n_ext):
         aux[i] = a[i]

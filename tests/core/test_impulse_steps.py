@@ -28,8 +28,8 @@ from tlismni.core import (
     TurningFriction,
     simulate,
 )
-from tlismni.core.contact_solvers.contact_blocks import pack_contacts
-from tlismni.core.contact_solvers.row_sweeps import list_columns, press_apart, sweep_rows
+from tlismni.core.contact_solvers.contact_blocks import WIDE, block_reals, block_wholes, pack_block
+from tlismni.core.contact_solvers.row_sweeps import press_apart, sweep_rows
 from tlismni.core.events.zeno import SIZE
 from tlismni.core.state.modes import CLOSED, STEP_FORCES
 from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT
@@ -232,11 +232,23 @@ def test_units_do_not_matter():
 
 
 @njit
-def _swept(count, tangents, turns, rows, n, directions, responses, columns, masses, off, arms, p, x, tolerance):
-    list_columns(rows, n, directions, responses, columns.ctypes.data)
-    lists = columns.reshape(2, rows, n + 1)
-    wholes, reals = np.empty(count * (4 + 2 * n) + n, np.int64), np.empty(count * (36 + 12 * n))
-    pack_contacts(count, n, rows, directions, responses, lists[0], lists[1], wholes, reals)
+def _packed(count, n, directions, responses, wholes, reals):
+    """Blocks of contacts whose rows are normals, first tangents and so on, each with all coordinates."""
+    at, place, every, rows = 2 * count, 0, np.arange(n), len(directions) // count
+    for i in range(count):
+        gradients, motions = np.zeros((WIDE, n)), np.zeros((n, WIDE))
+        for k in range(rows):
+            gradients[k], motions[:, k] = directions[k * count + i], responses[k * count + i]
+        at, place = pack_block(i, count, at, place, gradients, every, n, motions, every, n, wholes, reals)
+
+
+def _room(count, n):
+    return np.empty(block_wholes(count, 2 * n), np.int64), np.empty(block_reals(count, 2 * n))
+
+
+@njit
+def _swept(count, tangents, turns, rows, n, directions, responses, wholes, reals, masses, off, arms, p, x, tolerance):
+    _packed(count, n, directions, responses, wholes, reals)
     return sweep_rows(
         count, tangents, turns, rows, n, wholes, reals, masses, off, arms, p, x, np.empty(2 * (rows + n)), tolerance,
         100_000,
@@ -244,12 +256,9 @@ def _swept(count, tangents, turns, rows, n, directions, responses, columns, mass
 
 
 @njit
-def _pressed(count, n, directions, responses, columns, masses, gaps, p, x, work):
-    list_columns(count, n, directions, responses, columns.ctypes.data)
-    return press_apart(
-        count, count, n, directions.ctypes.data, responses.ctypes.data, columns.ctypes.data, masses, gaps, p, x, work,
-        1e-12, 200,
-    )  # fmt: skip
+def _pressed(count, n, directions, responses, wholes, reals, masses, gaps, p, x, work):
+    _packed(count, n, directions, responses, wholes, reals)
+    return press_apart(count, count, n, wholes, reals, masses, gaps, p, x, work, 1e-12, 200)
 
 
 def problem(seed, count, n, blocks):
@@ -279,9 +288,8 @@ def test_sweeps_meet_the_conditions_of_contact(seed, turns):
     count, n, blocks = 6, 24, 6 if turns else 3
     directions, responses, masses, off = problem(seed, count, n, blocks)
     arms = np.repeat([np.inf, 0.3, 0.3, 0.2, 0.2, 0.1][:blocks], count)
-    p, x = np.zeros(blocks * count), np.zeros(n)
-    columns = np.zeros(2 * blocks * count * (n + 1), dtype=np.int64)
-    _swept(count, 2, turns, blocks * count, n, directions, responses, columns, masses, off, arms, p, x, 1e-14)
+    p, x, blank = np.zeros(blocks * count), np.zeros(n), _room(count, n)
+    _swept(count, 2, turns, blocks * count, n, directions, responses, *blank, masses, off, arms, p, x, 1e-14)
     rate, p = (off + directions @ x).reshape(blocks, count), p.reshape(blocks, count)
     assert x == pytest.approx(responses.T @ p.ravel(), abs=1e-11)
     assert rate[0].min() > -1e-10
@@ -293,13 +301,15 @@ def test_sweeps_meet_the_conditions_of_contact(seed, turns):
         meets_its_circle(p[5:], rate[5:], 0.1 * p[0])
 
 
-def test_sweeps_of_a_long_pile_need_conjugate_gradients():
+def test_sweeps_of_a_long_pile_need_extrapolation():
     """60 blocks on one another, from no impulses: plain sweeps are 3e4."""
     count = n = 60
     directions = np.vstack([np.eye(n) - np.eye(n, k=-1), np.zeros((count, n))])  # normals, and no tangents
-    p, x, columns = np.zeros(2 * count), np.zeros(n), np.zeros(2 * 2 * count * (n + 1), dtype=np.int64)
+    p, x = np.zeros(2 * count), np.zeros(n)
     masses, off, arms = (directions**2).sum(axis=1), -(directions @ np.ones(n)), np.zeros(2 * count)
-    used = _swept(count, 1, False, 2 * count, n, directions, directions, columns, masses, off, arms, p, x, 1e-9)
+    used = _swept(
+        count, 1, False, 2 * count, n, directions, directions, *_room(count, n), masses, off, arms, p, x, 1e-9
+    )
     assert p[:count] == pytest.approx(np.arange(count, 0, -1), rel=1e-6)
     assert used < 4000
 
@@ -315,8 +325,8 @@ def test_overlaps_are_closed_by_the_least_motion(seed, count):
     directions, gaps = np.abs(directions), 0.01 * gaps
     responses = directions * responses.max() / max(responses.max(), 1e-300)
     masses = (directions * responses).sum(axis=1)
-    p, x, columns = np.zeros(count), np.zeros(n), np.zeros(2 * count * (n + 1), dtype=np.int64)
-    found = _pressed(count, n, directions, responses, columns, masses, gaps, p, x, np.zeros(3 * count + n))
+    p, x = np.zeros(count), np.zeros(n)
+    found = _pressed(count, n, directions, responses, *_room(count, n), masses, gaps, p, x, np.zeros(3 * count + n))
     assert found
     assert (gaps + directions @ x).min() > -1e-11
     assert np.abs(p * (gaps + directions @ x)).max() < 1e-10

@@ -7,8 +7,10 @@ import pytest
 from helpers import G, point_pendulum
 from test_heap3d import box
 from tlismni.core import (
+    Axes,
     Box2D,
     ContactGroup2D,
+    ContactGroup3D,
     CoulombFriction,
     HalfPlane2D,
     HalfSpace3D,
@@ -168,6 +170,52 @@ def test_its_own_step_is_that_of_the_models_time():
     slow, fast = simulate(boxes(2), 0.5, "moreau"), simulate(boxes(2, gravity=4.0 * G), 0.25, "moreau")
     assert slow.stats["steps"] == fast.stats["steps"] > 50
     assert fast.q[-1] == pytest.approx(slow.q[-1], abs=1e-12)
+
+
+def rolling_pile(length=1.0):
+    """Five spheres that fall on each other in a box and resist rolling; `length` is the unit of length, in m."""
+    radii = np.array([0.05, 0.04, 0.045, 0.035, 0.04]) / length
+    places = np.array([[0.1, 0.1, 0.06], [0.19, 0.1, 0.06], [0.14, 0.17, 0.08], [0.15, 0.11, 0.15], [0.1, 0.15, 0.2]])
+    bodies = [
+        RigidBody3D(
+            name=f"s{k}", mass=1.0 + k, inertia=(0.4 * (1.0 + k) * r**2,) * 3, position=tuple(places[k] / length)
+        )
+        for k, r in enumerate(radii.tolist())
+    ]
+    group = ContactGroup3D(
+        name="pile", spheres=[Sphere3D(marker=Marker3D(body=f"s{k}"), radius=r) for k, r in enumerate(radii.tolist())],
+        half_spaces=[HalfSpace3D(marker=Marker3D(attitude=Axes(z=z))) for z in ((0, 0, 1), (1, 0, 0), (0, 1, 0))],
+        law=NewtonImpact(restitution=0.2), friction=CoulombFriction(coefficient=0.4),
+        turning=TurningFriction(rolling=2e-3 / length, spinning=1e-3 / length),
+    )  # fmt: skip
+    return Model(gravity=(0.0, 0.0, -G / length), bodies=bodies, groups=[group])
+
+
+def test_the_unit_of_length_does_not_matter_to_what_rolls():
+    """The sweeps end where no rate changes by more than a part of the largest: rates of turning are no speeds."""
+    for sweeps in (30, 1000):
+        metres, others = (
+            simulate(rolling_pile(length), 0.4, "moreau", step=2e-3, sweeps=sweeps) for length in (1.0, 1e-3)
+        )
+        assert others.stats["impulse_steps"] == metres.stats["impulse_steps"] == 200
+        for k in range(5):
+            assert others[f"s{k}.x"][-1] == pytest.approx(1e3 * metres[f"s{k}.x"][-1], rel=1e-9)
+            assert others[f"s{k}.wx"][-1] == pytest.approx(metres[f"s{k}.wx"][-1], rel=1e-7, abs=1e-7)
+
+
+def test_more_sweeps_change_little():
+    """What sweeps leave at their limit is taken up by the next step, which begins with these impulses."""
+    few, many = (simulate(rolling_pile(), 1.5, "moreau", step=2e-3, sweeps=n) for n in (20, 3000))
+    for result in (few, many):
+        assert np.max(np.abs(result.v[-1])) < 1e-8
+    assert few.q[-1] == pytest.approx(many.q[-1], abs=5e-3)
+
+
+def test_a_crowd_takes_memory_by_its_contacts():
+    """No matrix of all that touches: the room for what an instant decides at once stays as it was."""
+    sim = Simulation(boxes(5), "moreau", step=2e-3)
+    sim.advance(0.01)
+    assert len(sim.drive.instant.touching) >= 30 > sim.drive.instant.decided
 
 
 def test_contacts_without_impulses_are_refused_by_name():
