@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contacts.geometry_kinds import DISKS, SPHERE
+from ..contacts.geometry_kinds import SHOWN
 from .assembly import Assembly
 
 FEW = 8
@@ -29,9 +29,9 @@ def patterns(assembly: Assembly) -> dict[str, Numbers]:
 
 
 def shows(assembly: Assembly, number: int) -> bool:
-    """True if the kernel of this batch looks at elements as the broad phase says."""
+    """True if the kernel of this batch may look at those elements alone that are asked for."""
     of = np.asarray(assembly.batches[number].contact)
-    return bool(len(of)) and bool(np.all(of >= 0)) and assembly.contacts[int(of[0])].kind in (DISKS, SPHERE)
+    return bool(len(of)) and bool(np.all(of >= 0)) and assembly.contacts[int(of[0])].kind in SHOWN
 
 
 def contacts_alone(assembly: Assembly) -> list[tuple[int | None, int, int]]:

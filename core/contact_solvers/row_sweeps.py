@@ -19,9 +19,10 @@ from .contact_blocks import WIDE, move_normal, normal_rate, sweep_contacts
 def sweep_rows(
     count: int, tangents: int, turns: bool, rows: int, n: int, wholes: Any, reals: Any, masses: Any, off: Any,
     arms: Any, p: Any, x: Any, work: Any, tolerance: float, most: int,
-) -> int:  # fmt: skip
+) -> Any:  # fmt: skip
     """Impulses p (rows,) of `count` contacts, and the change x (n,) of the motion that they cause; both go on from what
-    they are. Until no rate changes by more than `tolerance` in a sweep, but at most so many: how many there were.
+    they are. Until no rate changes by more than `tolerance` (m/s) in a sweep, but at most so many: how many there were,
+    and by how much a rate changed in the last.
 
     Rows are normals, first and second tangents, two across the normal and one along it against turning, as many of them
     as `tangents` and `turns` say. off, masses, arms (rows,): rates without the impulses, the rows' inverse masses, 0
@@ -38,10 +39,8 @@ def sweep_rows(
         work[e] = work[end + e] = p[e] if e < rows else x[e - rows]
     for turn in range(most):
         change = sweep_contacts(count, tangents, stages, rows, wholes, reals, masses, off, arms, p, x, local)
-        if change <= tolerance:
-            return turn + 1
-        if turn == most - 1:
-            break
+        if change <= tolerance or turn == most - 1:
+            return turn + 1, change
         back = 0.0
         for r in range(rows):
             back += masses[r] * (work[end + r] - p[r]) * (p[r] - work[r])
@@ -55,7 +54,7 @@ def sweep_rows(
                 p[e] = begins
             else:
                 x[e - rows] = begins
-    return most
+    return 0, np.inf
 
 
 @internal

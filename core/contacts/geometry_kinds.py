@@ -19,6 +19,10 @@ MAY_SLEEP = (DISKS, PLANE, SEGMENT, SPHERE)
 the plane."""
 
 
+SHOWN = (OWN, DISKS, SPHERE, OUTLINE, RING, ROPE)
+"""Kinds whose kernels, in part, go through those elements alone that are asked for (`compiled/kernels.shown`)."""
+
+
 def are(kind: int, *kernels: Any) -> None:
     """Say, where these kernels (or formulas of gaps) stand, of which kind they are."""
     _KINDS.update(dict.fromkeys(kernels, kind))

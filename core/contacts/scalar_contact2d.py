@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any, ClassVar
 
 from ..compiled.jit import internal
+from ..compiled.kernels import shown, shown_at
 from ..compiled.views import imat, mat, vec
 from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.formula2d import (
@@ -95,7 +96,8 @@ def _kernel(gap: Callable[..., Any], arguments: Arguments) -> Any:
 
     def scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
         par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
-        for e in range(b.count):
+        for i in range(shown(b)):
+            e = shown_at(b, i)
             g = call(q, coord[e], par[e])
             act(b, job, e, value_of(g), gradient_of(g), hessian_of(g))
 
@@ -111,7 +113,8 @@ def _rubbing_kernel(gap: Callable[..., Any], slide: Callable[..., Any], argument
 
     def sliding_scalar_contact2d_kernel(job: int, t: float, b: Any) -> None:
         par, coord, q = mat(b.par, b.count, b.npar), imat(b.coord, b.count, b.ncoord), vec(b.q, b.n_extended)
-        for e in range(b.count):
+        for i in range(shown(b)):
+            e = shown_at(b, i)
             g, s = call(q, coord[e], par[e]), call_slide(q, coord[e], par[e])
             act_sliding(
                 b, job, t, e, value_of(g), gradient_of(g), hessian_of(g), value_of(s), gradient_of(s), hessian_of(s),

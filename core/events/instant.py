@@ -95,6 +95,7 @@ class Instant:
         entries = entries_of_few(assembly, most)[1]
         space = self.rows_space = rows_space or 4 * (entries + n)
         # normals and tangents of so many contacts, and torques against turning
+        # (on a patch the spin has a row, too)
         every, rows = 3 * decided, (3 + TURNING_ROWS) * most
         work = max(independent_size(every, n), farthest_size(decided), least_norm_size(2 * decided, 2 * decided, 1))
         of_cones = dict.fromkeys(("nn", "nt", "tt"), decided * decided) | dict.fromkeys(VECTORS_OF_CONES, decided)
@@ -111,7 +112,7 @@ class Instant:
                 "contacts": most, "table": TOUCHING.itemsize // 8 * most, "scalars": SCALARS.itemsize // 8,
                 **dict.fromkeys(SOLVER_VECTORS, most),
                 "a": 4 * decided**2, "matrix": 4 * decided**2 + 4 * decided, "work": work,
-                "directions": every * n, "responses": every * n, "columns": n + 1,
+                "directions": (every + decided) * n, "responses": (every + decided) * n, "columns": n + 1,
                 "sweeps": ROW_ROOM * rows + 2 * n,
                 "opening_wholes": opening_wholes(n, m), "opening_reals": opening_reals(n, m),
                 "block_wholes": block_wholes(most, self.coordinates),

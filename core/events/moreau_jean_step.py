@@ -20,7 +20,7 @@ from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, memories_at
 from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, PUSHED_FROM, PUSHES, PUSHES_LEFT, call_accelerations, loop_at
-from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
+from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, OK, RATE_SCALE, UNFINISHED_SWEEPS
 from .constraint_projection import meet_positions, meet_rates
 from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows, part, prepare_rows, room, rows_of
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
@@ -169,12 +169,15 @@ def _push(instant: Any, drive: Any, workspace: Any, h: float) -> None:
     )
     v, q, changes = vec(workspace.v, workspace.n_ext), vec(workspace.q, workspace.n_ext), vec(instant.velocities, n)
     wholes, reals = blocks_of(instant)
-    scalars(instant).sweeps = sweep_rows(
+    tolerance = TOLERANCE * scalars(instant).largest_rate
+    scalars(instant).sweeps, left = sweep_rows(
         count, 2, rows > 3 * count, rows, n, wholes, reals,
         part(instant, rows, TAKES), part(instant, rows, OFF), part(instant, rows, ROW_ARM), part(instant, rows, P), x,
         room(instant, rows, n),
-        TOLERANCE * scalars(instant).largest_rate, drive.most_sweeps,
+        tolerance, drive.most_sweeps,
     )  # fmt: skip
+    if left > tolerance:
+        ivec(workspace.counters, COUNTERS_SIZE)[UNFINISHED_SWEEPS] += 1
     for j in range(n):
         v[j] += x[j]
         q[j] += 0.5 * h * x[j]

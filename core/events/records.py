@@ -117,7 +117,7 @@ INSTANT = np.dtype(
             *SOLVER_VECTORS,
             # (2 most_decided, 2 most_decided) float64: inverse effective masses, normals first
             "a",
-            # (3 most_decided, n) float64: gradients, and the motions that unit impulses cause
+            # (4 most_decided, n) float64: gradients, and the motions that unit impulses cause
             "directions", "responses",
             "some", "chosen", "order",   # (2 most,) int64, in space (3 most,)
             "kept_memory",               # (n_contacts, MEMORY_SIZE) float64

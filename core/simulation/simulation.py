@@ -21,7 +21,7 @@ from .state import State
 _COUNTER_NAMES = (
     "steps", "rejected", "outer_iterations", "inner_iterations", "factorizations", "partitions",
     "residual_evaluations", "stages", "analyses", "krylov_iterations", "impulse_steps",
-    "impacts_in_rounds", "unshared_loads", "left_approaches",
+    "impacts_in_rounds", "unshared_loads", "left_approaches", "unfinished_sweeps",
 )  # fmt: skip
 
 

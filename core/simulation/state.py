@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 
-FORMAT = "tlismni-state-12"
+FORMAT = "tlismni-state-13"
 TYPES = ("<f8", "<i8")
 
 

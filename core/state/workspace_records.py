@@ -192,7 +192,8 @@ OF_IMPULSES = 10  # steps of impulses, which are among the steps
 IMPACTS_IN_ROUNDS = 11  # see `events/impact_retries.py`
 UNSHARED_LOADS = 12  # instants at which contacts that repeat each other have got other than the least forces
 LEFT_APPROACHES = 13  # instants that have left an approach (`events/residual_approach.py`)
-COUNTERS_SIZE = 14
+UNFINISHED_SWEEPS = 14  # steps of impulses whose sweeps have ended at their limit
+COUNTERS_SIZE = 15
 
 # status of stages, steps and of the loop
 OUTER_DIVERGED = 1

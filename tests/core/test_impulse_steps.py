@@ -307,7 +307,7 @@ def test_sweeps_of_a_long_pile_need_extrapolation():
     directions = np.vstack([np.eye(n) - np.eye(n, k=-1), np.zeros((count, n))])  # normals, and no tangents
     p, x = np.zeros(2 * count), np.zeros(n)
     masses, off, arms = (directions**2).sum(axis=1), -(directions @ np.ones(n)), np.zeros(2 * count)
-    used = _swept(
+    used, _ = _swept(
         count, 1, False, 2 * count, n, directions, directions, *_room(count, n), masses, off, arms, p, x, 1e-9
     )
     assert p[:count] == pytest.approx(np.arange(count, 0, -1), rel=1e-6)
