@@ -14,8 +14,8 @@ from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal
 from ..compiled.kernels import RESIDUAL, batch_at, call_kernel
 from ..compiled.views import imat, ivec, mat, vec
-from ..events.impact_law_codes import BY_FORCE
 from ..methods.history import history_row, history_time
+from ..state.impact_law_codes import BY_FORCE
 from ..state.modes import OPEN, memories_at
 from ..state.run_records import WATCH
 from ..state.workspace_records import call_evaluate

@@ -13,6 +13,7 @@ from ..compiled.views import ivec, mat, vec
 from ..event_detection.contact_sleeping import look_at_all, show_elements, show_pending
 from ..event_detection.crossings import remember
 from ..methods.history import history_time, recall, replace, restart
+from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import MEMORY_SIZE, memories_at
 from ..state.run_records import (
     CLOCK_SIZE,
@@ -29,7 +30,6 @@ from ..state.run_records import (
 )
 from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
 from .breakpoint import pass_breakpoint
-from .impact_law_codes import AT_MASSLESS, BY_FORCE
 from .inconsistent_modes import find_pending, find_unsettled
 from .massless import settle_massless
 from .mode_selection import decide

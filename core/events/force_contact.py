@@ -11,10 +11,10 @@ from ..compiled.views import imat, ivec, mat, vec
 from ..laws import call_law
 from ..methods.history import history_time
 from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, GAP_ROUNDING, LEAST_APPROACH
+from ..state.impact_law_codes import BY_FORCE
 from ..state.modes import ACTIVE, OPEN, RELEASED, memories_at
 from ..state.run_records import CLOCK_SIZE, CLOSE, FORCE_NUMBERS, OPENS, STEP_SIZE, call_accelerations, loop_at
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
-from .impact_law_codes import BY_FORCE
 from .records import NO_ACCELERATIONS, SETTLED, call_part, delassus, scalars
 from .report import report
 

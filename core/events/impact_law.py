@@ -9,8 +9,8 @@ from ..assembly.sticking_force import in_space
 from ..compiled.jit import internal, record_view
 from ..compiled.views import ivec, vec
 from ..rounding import UNSOLVED
+from ..state.impact_law_codes import BY_NEWTON_IN_TURN, BY_POISSON
 from ..state.run_records import LOOP_TYPE
-from .impact_law_codes import BY_NEWTON_IN_TURN, BY_POISSON
 from .impact_retries import ALL_ROUNDS, FIRST_ROUND, MOST_BLOWS, MOST_BOUNCES, MOST_ROUNDS, restitution, strikes_anew
 from .rates import masses, push, read_all_rates
 from .records import ENDLESS_BLOWS, ENDLESS_ROUNDS, NO_IMPACT, SETTLED, scalars, touching

@@ -8,7 +8,7 @@ from typing import Any
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import ENERGY_GAIN
-from .impact_law_codes import BY_POISSON
+from ..state.impact_law_codes import BY_POISSON
 from .records import SETTLED, scalars, touching
 
 MOST_BLOWS = 100_000

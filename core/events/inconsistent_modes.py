@@ -7,10 +7,10 @@ from ..assembly.sticking_force import friction_limit, held_friction, is_held
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
+from ..state.impact_law_codes import AT_MASSLESS
 from ..state.modes import CLOSED, memories_at
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
 from ..state.workspace_records import OK, structure_at
-from .impact_law_codes import AT_MASSLESS
 from .rates import read_level
 from .reading import comes_back
 from .records import NO_ACCELERATIONS, SETTLED, WANT_MEMORY, call_part, scalars, touching

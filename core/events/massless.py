@@ -14,11 +14,11 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..methods.history import history_time
 from ..rounding import RATE_ROUNDING
+from ..state.impact_law_codes import AT_MASSLESS
 from ..state.modes import CLOSED, OPEN, memories_at
 from ..state.run_records import CLOSE, GRAZE, OPENS, call_accelerations
 from ..state.workspace_records import OK
 from .constraint_projection import meet_constraints
-from .impact_law_codes import AT_MASSLESS
 from .progress import GUARD_SIZE, RUN_BEGAN
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part
 from .report import report

@@ -13,9 +13,9 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
+from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import CLOSED, STICKS, memories_at
 from ..state.run_records import COUNTS_SIZE, HERE
-from .impact_law_codes import AT_MASSLESS, BY_FORCE
 from .records import IMMOVABLE_CONTACT, OF_CONTACTS, SETTLED, delassus, scalars, touching
 
 

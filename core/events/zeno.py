@@ -22,6 +22,7 @@ from ..compiled.views import ivec, vec
 from ..event_detection.contact_evaluation import can_look
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
+from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import CLOSED, memories_at
 from ..state.modes import STEP_FORCES as BLOCKS
 from ..state.run_records import (
@@ -42,7 +43,6 @@ from ..state.run_records import (
     loop_at,
 )
 from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
-from .impact_law_codes import AT_MASSLESS, BY_FORCE
 from .progress import COUNTED_SINCE, EVENTS_COUNTED, GUARD_SIZE
 from .records import DECLINED, SETTLED
 

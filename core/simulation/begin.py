@@ -14,12 +14,12 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..event_detection.crossings import remember
 from ..events.event_handling import begin_pending_forces
-from ..events.impact_law_codes import BY_FORCE
 from ..events.prepare import rank_of
 from ..events.records import REPEATED_ROWS, SETTLED, call_part
 from ..methods.history import restart
 from ..rounding import RATE_ROUNDING, START_OVERLAP, START_RANK
 from ..stage.accelerations import solve_accelerations
+from ..state.impact_law_codes import BY_FORCE
 from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE
 from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
 from .begin_measure import place

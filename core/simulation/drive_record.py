@@ -12,7 +12,6 @@ from ..compiled.jit import address_of
 from ..compiled.records import ArrayRecord
 from ..event_detection.roots import NEAREST
 from ..events import Event
-from ..events.impact_law_codes import code_of
 from ..events.instant import Instant
 from ..events.progress import Progress
 from ..events.report import MOST_EVENTS
@@ -21,6 +20,7 @@ from ..laws.friction import LuGreFriction
 from ..recovery.compiled_repartition import go_by_impulses, repair_now
 from ..recovery.policy import recover
 from ..stage.accelerations import solve_accelerations
+from ..state.impact_law_codes import code_of
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,

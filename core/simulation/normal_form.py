@@ -15,9 +15,9 @@ from ..assembly.sticking_force import in_space
 from ..compiled import types
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, mat, vec
-from ..events.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..events.zeno import MANY_TOUCH, only_impulses, pushed_lately
 from ..methods.history import history_row, history_time
+from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, NEXT_NORM, RING_SIZE
 from ..state.modes import CLOSED, OPEN, STICKS, memories_at
 from ..state.modes import STEP_FORCES as BLOCKS

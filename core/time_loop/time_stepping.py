@@ -15,9 +15,9 @@ from ..event_detection.broad_phase import keep_watch
 from ..event_detection.contact_evaluation import set_travel
 from ..event_detection.contact_sleeping import show_elements, show_pending, sleeps_on
 from ..event_detection.trial_steps import make_trial
-from ..events.impact_law_codes import BY_FORCE
 from ..events.zeno import any_force_law, begin_impulses, end_pushing, near_level, only_impulses
 from ..methods.history import history_time, recall
+from ..state.impact_law_codes import BY_FORCE
 from ..state.modes import ACTIVE, OPEN, STEP_FORCES, UNWATCHED, memories_at
 from ..state.run_records import (
     CLOCK_SIZE,
