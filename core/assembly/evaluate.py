@@ -8,7 +8,7 @@ from ..compiled.jit import compiled, internal
 from ..compiled.kernels import CONSTRAINTS, ENERGY, POWER, RESIDUAL, TANGENT, batch_at, call_kernel
 from ..compiled.views import ivec, vec
 from ..state.modes import CLOSED, memories_at
-from ..state.workspace_records import COUNTERS_SIZE, EVALUATIONS, call_evaluate
+from ..state.workspace_records import call_evaluate, counters_at
 from .redundant_reactions import write_compatibility
 
 
@@ -51,7 +51,7 @@ def evaluate_residuals(workspace: Any) -> None:
     for i in range(workspace.n_ext):
         r[i] = 0.0
     call_evaluate(workspace.evaluate_function, workspace, RESIDUAL)
-    ivec(workspace.counters, COUNTERS_SIZE)[EVALUATIONS] += 1
+    counters_at(workspace.counters).evaluations += 1
 
 
 @internal

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..compiled.jit import compiled, internal
 from ..compiled.views import ivec, vec
-from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE, RATE_SCALE
+from ..state.workspace_records import control_at
 
 
 @internal
@@ -37,7 +37,7 @@ def position_level_at(workspace: Any, q: Any) -> float:
 @compiled
 def rate_level(workspace: Any) -> float:
     """Of the velocities, at least what the model's own time makes, 1/s."""
-    return _level(workspace, vec(workspace.v, workspace.n), vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
+    return _level(workspace, vec(workspace.v, workspace.n), control_at(workspace.control).rate_scale)
 
 
 @internal
@@ -54,7 +54,7 @@ def rate_size(workspace: Any, k: int) -> float:
 @compiled
 def acceleration_level(workspace: Any) -> float:
     """Of the accelerations, at least what the model's own time makes, 1/s^2."""
-    rate = vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
+    rate = control_at(workspace.control).rate_scale
     return _level(workspace, vec(workspace.a, workspace.n), rate * rate)
 
 
@@ -62,7 +62,7 @@ def acceleration_level(workspace: Any) -> float:
 def force_level(workspace: Any) -> float:
     """Of the multipliers, as the work that they do over the scale of their rows: at least the model's own, J."""
     lam, row_scale = vec(workspace.lam, workspace.m_ext), vec(workspace.row_scale, workspace.m_ext)
-    largest = vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE]
+    largest = control_at(workspace.control).energy_scale
     for i in range(workspace.m_ext - 1):
         y = abs(lam[i]) * row_scale[i]
         if y > largest:

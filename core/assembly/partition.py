@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ..errors import ConsistencyError
 from ..linalg import RowPivots, SingularMatrixError, pivot_rows
 from ..rounding import CONTRADICTION, RANK_TOLERANCE
-from ..state.workspace_records import ANALYSES, FACTOR_AGE, FIRST_SENSITIVITY, PARTITIONS, SENSITIVITY
+from ..state.workspace_records import convergence_of, counters_of
 from .condition_probe import set_probe
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level
@@ -82,9 +82,9 @@ def prepare(workspace: Workspace) -> None:
     evaluate_tangent(workspace.record, 0.0, 0.0)
     workspace.set_partition(choose_dependent(workspace))
     structure, values = workspace.structure, workspace.arrays["values"]
-    counters = workspace.arrays["counters"]
-    counters[PARTITIONS] += 1
-    counters[ANALYSES] += 1
+    counters = counters_of(workspace.arrays["counters"])
+    counters.partitions += 1
+    counters.analyses += 1
     for factorization in (structure.kkt, structure.lu_d, structure.lu_p):
         if factorization is None or factorization.n == 0:
             continue
@@ -101,6 +101,5 @@ def prepare(workspace: Workspace) -> None:
         )
     structure.kkt_query.follow(structure.kkt)
     set_probe(workspace.record)
-    workspace.arrays["rate"][FACTOR_AGE] = -1.0
-    workspace.arrays["rate"][SENSITIVITY] = 0.0
-    workspace.arrays["rate"][FIRST_SENSITIVITY] = -1.0
+    rate = convergence_of(workspace.arrays["rate"])
+    rate.factor_age, rate.sensitivity, rate.first_sensitivity = -1.0, 0.0, -1.0

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError
 from ..rounding import CONTRADICTION, START_RANK
-from ..state.workspace_records import LEAST_CONDITION
+from ..state.workspace_records import convergence_of
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .levels import position_level, rate_level
 from .partition import pivots_of, prepare, redundancy_error
@@ -178,10 +178,10 @@ def choose_rows(workspace: Workspace) -> bool:
             worse = _least_singular_value(matrix[~out]) < WORSE * _least_singular_value(matrix[order])
             better |= set((np.delete(rows, order) if worse else rows[out]).tolist())
     if better != dropped:
-        least = float(workspace.arrays["rate"][LEAST_CONDITION])
+        least = convergence_of(workspace.arrays["rate"]).least_condition
         workspace.drop(frozenset(better))
         # the same constraints, said by other rows: how far they are from a singular position is judged as before
-        workspace.arrays["rate"][LEAST_CONDITION] = least
+        convergence_of(workspace.arrays["rate"]).least_condition = least
         evaluate_residuals(workspace.record)
         evaluate_tangent(workspace.record, 0.0, 0.0)
     return better != dropped

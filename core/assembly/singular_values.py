@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..linalg.smallest_singular import smallest_singular
-from ..state.workspace_records import FACTOR_AGE
+from ..state.workspace_records import convergence_of
 from .evaluate import evaluate_residuals, evaluate_tangent
 from .mechanisms import mechanisms
 from .workspace import Workspace
@@ -111,7 +111,7 @@ class AllRows:
 
     def __exit__(self, *_: object) -> None:
         self.workspace.drop(self.dropped)
-        self.rate[FACTOR_AGE] = -1.0
+        convergence_of(self.rate).factor_age = -1.0
         self.workspace.arrays["rate"][:] = self.rate
         evaluate(self.workspace)
 

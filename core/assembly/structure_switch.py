@@ -14,7 +14,13 @@ from ..compiled.jit import internal
 from ..compiled.kernels import batch_at
 from ..compiled.views import ivec, vec
 from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, OF_FIRST, OF_NORMAL, OF_SECOND, STICKS, memories_at
-from ..state.workspace_records import CONDITION, FACTOR_AGE, OK, RATE_SIZE, call_engage, partition_at, structure_at
+from ..state.workspace_records import (
+    OK,
+    call_engage,
+    convergence_at,
+    partition_at,
+    structure_at,
+)
 
 APART, ENGAGED, HELD, STUCK, STUCK_TWICE = range(5)
 """A contact takes no part; its force has a place in the matrix; its gap is a constraint; its sliding distance too; in
@@ -121,10 +127,10 @@ def take_structure(workspace: Any, address: int) -> None:
     for i in range(structure.n_values):
         values[i] = 0.0
     # what is known of the matrices' factors and of the constraints' condition holds no more
-    rate = vec(workspace.rate, RATE_SIZE)
-    rate[FACTOR_AGE] = -1.0
-    for i in range(CONDITION, RATE_SIZE):
-        rate[i] = 0.0
+    rate = convergence_at(workspace.rate)
+    rate.factor_age = -1.0
+    rate.condition = rate.least_condition = rate.worst_condition = 0.0
+    rate.choice_condition = rate.looked_condition = 0.0
     if partition_at(structure.partition).ready != 0:
         take_partition(workspace, structure.partition)
 
@@ -140,7 +146,7 @@ def take_partition(workspace: Any, address: int) -> None:
         partition.free_col,
         partition.free_slot,
     )
-    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    convergence_at(workspace.rate).factor_age = -1.0
 
 
 @internal

@@ -24,12 +24,12 @@ from ..state.workspace_records import (
     COUPLED_STAGES,
     ENGAGE_SIGNATURE,
     EVALUATE_SIGNATURE,
-    FACTOR_AGE,
     OK,
     SCRATCH_SIZE,
     SPIN_SIZE,
     STRUCTURE,
     WORKSPACE,
+    convergence_of,
 )
 from .assembly import Assembly
 from .building import engage_wanted
@@ -152,7 +152,7 @@ class Workspace:
             "atol_v": np.zeros(n_ext),
             "control": np.zeros(CONTROL_SIZE),
         }
-        arrays["rate"][FACTOR_AGE] = -1.0
+        convergence_of(arrays["rate"]).factor_age = -1.0
         arrays["inputs"][: len(a.input_start), 0] = a.input_start
         self._shapes = [(*b.coord.shape, b.row.shape[1] if b.row.size else 0) for b in a.batches]
         sparse = addresses(a.n + a.m > DENSE_LIMIT)

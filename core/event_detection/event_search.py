@@ -13,7 +13,7 @@ from ..compiled.views import ivec, mat, vec
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP, SAME_INSTANT
 from ..state.modes import CLOSED, OPEN, memories_at
-from ..state.run_records import CLOCK_SIZE, FOUND_SIZE, TRIAL_STEP, call_accept, call_find_events
+from ..state.run_records import FOUND_SIZE, call_accept, call_find_events, clock_at
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS
 from .event_step import END_OF_STEP, event_step
@@ -45,7 +45,7 @@ def locate(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
 
     The current point must be the end of the step of size TRIAL_STEP, in which events have been found.
     """
-    h = vec(loop.clock, CLOCK_SIZE)[TRIAL_STEP]
+    h = clock_at(loop.clock).trial_step
     found, pending = mat(drive.found, workspace.n_contacts, FOUND_SIZE), ivec(drive.pending, workspace.n_contacts)
     brackets = mat(loop.brackets, workspace.n_contacts, BRACKET)
     vec(drive.last_trial, 1)[0] = vec(drive.nearest, NEAREST)[0] = -1.0

@@ -16,7 +16,7 @@ from ..methods.history import history_row, history_time
 from ..methods.multistep import rows_available
 from ..rounding import AS_LONG, SLIP_EXCESS
 from ..state.modes import CLOSED, IDLE, memories_at
-from ..state.run_records import CLOCK_SIZE, MAX_STEP, WATCH, call_accelerations
+from ..state.run_records import WATCH, call_accelerations, clock_at
 from ..state.workspace_records import OK
 from .contact_evaluation import BRACKET, HAPPENS, VIEW, between, look
 from .root_bounds import SHORTEST_PART
@@ -105,7 +105,7 @@ def _solve_at(workspace: Any, method: Any, loop: Any, h: float, s: float, margin
 def forces_may_vanish(workspace: Any, method: Any, loop: Any, h: float) -> bool:
     """True if a force or a margin of friction of a closed contact might be zero between the ends of the step."""
     start, lam = history_row(workspace, method, 0)[4 * workspace.n_ext :], vec(workspace.lam, workspace.m_ext)
-    memory, longest = memories_at(workspace.memory, workspace.n_contacts), vec(loop.clock, CLOCK_SIZE)[MAX_STEP]
+    memory, longest = memories_at(workspace.memory, workspace.n_contacts), clock_at(loop.clock).max_step
     known = rows_available(method) > 1
     ratio = (history_time(method, 0) - history_time(method, 1)) / h if known else 1.0
     before = history_row(workspace, method, 1)[4 * workspace.n_ext :] if known else start
@@ -138,7 +138,7 @@ def forces_vanish(workspace: Any, method: Any, loop: Any, h: float, none: float)
     memory, brackets = memories_at(workspace.memory, n), mat(loop.brackets, n, BRACKET)
     places, values = np.empty(DEPTH + 1), np.empty((DEPTH + 2, n, WANT))
     bends, left = np.full((DEPTH + 1, n, WANT), np.inf), values[DEPTH + 1]
-    longest, known = vec(loop.clock, CLOCK_SIZE)[MAX_STEP], rows_available(method) > 1
+    longest, known = clock_at(loop.clock).max_step, rows_available(method) > 1
     ratio = (history_time(method, 0) - history_time(method, 1)) / h if known else 1.0
     start, lam = history_row(workspace, method, 0)[4 * workspace.n_ext :], vec(workspace.lam, workspace.m_ext)
     watched = np.empty((n, WANT), dtype=np.bool_)

@@ -10,7 +10,7 @@ from ..methods.history import history_row
 from ..rounding import SLIP_EXCESS
 from ..state.modes import CLOSED, IDLE, memories_at
 from ..state.run_records import WATCH, call_trial
-from ..state.workspace_records import FACTOR_AGE, OK, OUTER_RATE, RATE_SIZE
+from ..state.workspace_records import OK, convergence_at
 from .crossings import friction_margin, no_sliding
 
 # what is searched for a root
@@ -30,8 +30,8 @@ def make_trial(drive: Any, workspace: Any, method: Any, loop: Any, step: float, 
         if rows > 1:
             loop.rows = 1_000_000_000
     # with old matrices the same step would come out a little different each time it is made
-    rate = vec(workspace.rate, RATE_SIZE)
-    rate[FACTOR_AGE], rate[OUTER_RATE] = -1.0, 1.0
+    rate = convergence_at(workspace.rate)
+    rate.factor_age, rate.outer_rate = -1.0, 1.0
     status = call_trial(drive.trial, workspace, method, loop, step)
     loop.starter, loop.rows = starter, rows
     last[0] = step if status == OK else -1.0

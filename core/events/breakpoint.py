@@ -14,7 +14,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..methods.history import recall
 from ..rounding import CONTINUOUS
-from ..state.run_records import COUNTS_SIZE, EVENTS, GOALS_SIZE, JUMPS, PASSED, call_accelerations
+from ..state.run_records import JUMPS, call_accelerations, counts_at, goals_at
 from ..state.workspace_records import OK
 from .moved_surfaces import find_moved, is_moved_row, release_sticking
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, call_part, clear
@@ -23,13 +23,13 @@ from .report import report, room_for
 
 @internal
 def pass_breakpoint(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
-    """Bring the current point to the breakpoint `PASSED` of the goals, just after the newest row, with accelerations
+    """Bring the current point to the breakpoint `passed` of the goals, just after the newest row, with accelerations
     that hold behind it, and find the contacts that are to be settled there, to `unsettled`: a status; with any but
     SETTLED only what an instant keeps has changed."""
-    events = ivec(drive.counts, COUNTS_SIZE)[EVENTS]
-    status = _pass(instant, drive, workspace, method, vec(drive.goals, GOALS_SIZE)[PASSED])
+    events = counts_at(drive.counts).events
+    status = _pass(instant, drive, workspace, method, goals_at(drive.goals).passed)
     if status != SETTLED:
-        ivec(drive.counts, COUNTS_SIZE)[EVENTS] = events
+        counts_at(drive.counts).events = events
     return status
 
 

@@ -16,19 +16,12 @@ from ..methods.history import history_time, recall, replace, restart
 from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import MEMORY_SIZE, memories_at
 from ..state.run_records import (
-    CLOCK_SIZE,
-    COUNTS_SIZE,
-    EVENTS,
-    GOALS_SIZE,
-    HANDLED,
-    HANDLED_AT,
-    HERE,
-    PUSH_STEP,
-    PUSHED_FROM,
-    STEP_SIZE,
     call_sample,
+    clock_at,
+    counts_at,
+    goals_at,
 )
-from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, ENERGY_SCALE, FACTOR_AGE, RATE_SIZE
+from ..state.workspace_records import COUNTERS_SIZE, RATE_SIZE, control_at, convergence_at
 from .breakpoint import pass_breakpoint
 from .inconsistent_modes import find_pending, find_unsettled
 from .massless import settle_massless
@@ -65,23 +58,23 @@ def _know_rates(workspace: Any) -> None:
     evaluate_power(workspace)
     for i in range(workspace.n_ext):
         aux[i] = a[i]
-    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    convergence_at(workspace.rate).factor_age = -1.0
 
 
 @internal
 def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> int:
     """Let the pending events happen at the newest row: a status of `records`."""
-    t, counts, goals = history_time(method, 0), ivec(drive.counts, COUNTS_SIZE), vec(drive.goals, GOALS_SIZE)
+    t, counts, goals = history_time(method, 0), counts_at(drive.counts), goals_at(drive.goals)
     room = loop.capacity == 0 or ivec(loop.cursor, 1)[0] < loop.capacity
     if not room or not room_for(drive, MOST_EVENTS * workspace.n_contacts):
         return DECLINED
     if not _gets_on(drive, t):
         return int(call_part(instant.step_through, instant, drive, workspace, method))
-    if only_impulses(loop) and vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+    if only_impulses(loop) and clock_at(loop.clock).push_step == 0.0:
         begin_impulses(drive, workspace, method, loop)
         return SETTLED
     _keep(instant, workspace, False)
-    step, pushing = vec(loop.clock, CLOCK_SIZE)[STEP_SIZE], vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    step, pushing = clock_at(loop.clock).step_size, clock_at(loop.clock).push_step != 0.0
     # samples may have been asked for since the step that ended here
     recall(workspace, method, 0)
     if pushing:
@@ -93,12 +86,12 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
     # structures are not given up as long as this may be the one to come back to
     structure = workspace.structure
     workspace.kept = structure
-    handled_at, here, events = goals[HANDLED_AT], counts[HERE], counts[EVENTS]
-    counts[HERE] = here + 1 if t == handled_at else 1
-    goals[HANDLED_AT] = t
+    handled_at, here, events = goals.handled_at, counts.here, counts.events
+    counts.here = here + 1 if t == handled_at else 1
+    goals.handled_at = t
     scalars(instant).touched = 0
     scalars(instant).touched_in_space = scalars(instant).unshared_contact = scalars(instant).approaching_contact = 0
-    begun, status = vec(loop.clock, CLOCK_SIZE)[PUSHED_FROM] == t, SETTLED
+    begun, status = clock_at(loop.clock).pushed_from == t, SETTLED
     if _any_force(drive, workspace):
         status = (
             _settle_forces_where_they_are(instant, drive, workspace, method)
@@ -121,9 +114,9 @@ def settle(drive: Any, instant: Any, workspace: Any, method: Any, loop: Any) -> 
     if pushing:
         show_elements(workspace)
     if status != SETTLED:
-        goals[HANDLED_AT], counts[HERE], counts[EVENTS] = handled_at, here, events
+        goals.handled_at, counts.here, counts.events = handled_at, here, events
         _put_back(instant, workspace, method, structure)
-        vec(loop.clock, CLOCK_SIZE)[STEP_SIZE] = step
+        clock_at(loop.clock).step_size = step
         many = status >= NO_IMPACT and not pushing and touched >= MANY_TOUCH
         if many and call_part(instant.step_through, instant, drive, workspace, method) == SETTLED:
             return SETTLED
@@ -177,7 +170,7 @@ def _settle_forces_where_they_are(instant: Any, drive: Any, workspace: Any, meth
 def _loses_unseen(instant: Any, workspace: Any) -> bool:
     """True if many touch in space, and bringing them onto their new constraints has changed the energy by more than
     rounding. (In the plane what is lost so is next to nothing, and events get on.)"""
-    most = UNSEEN * vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE]
+    most = UNSEEN * control_at(workspace.control).energy_scale
     return bool(scalars(instant).touched_in_space >= MANY_TOUCH and abs(scalars(instant).projection_loss) > most)
 
 
@@ -186,7 +179,7 @@ def begin_pending_forces(drive: Any, instant: Any, workspace: Any, method: Any, 
     """Let the force laws of pending contacts act from the current point on, at the start; where something is wanted,
     nothing has happened."""
     _keep(instant, workspace, False)
-    events, step = ivec(drive.counts, COUNTS_SIZE)[EVENTS], vec(loop.clock, CLOCK_SIZE)[STEP_SIZE]
+    events, step = counts_at(drive.counts).events, clock_at(loop.clock).step_size
     structure = workspace.structure
     workspace.kept = structure
     status = int(call_part(instant.settle_forces, instant, drive, workspace, method))
@@ -195,7 +188,7 @@ def begin_pending_forces(drive: Any, instant: Any, workspace: Any, method: Any, 
         begin_anew(workspace, method, loop)
         return status
     _put_back(instant, workspace, method, structure)
-    ivec(drive.counts, COUNTS_SIZE)[EVENTS], vec(loop.clock, CLOCK_SIZE)[STEP_SIZE] = events, step
+    counts_at(drive.counts).events, clock_at(loop.clock).step_size = events, step
     return status
 
 
@@ -243,7 +236,7 @@ def _keep(instant: Any, workspace: Any, back: bool) -> None:
         copy(memory, kept, size)
         copy(rate, kept_rate, RATE_SIZE)
         copy(counters, kept_counters, COUNTERS_SIZE)
-        rate[FACTOR_AGE] = -1.0
+        convergence_at(workspace.rate).factor_age = -1.0
     else:
         copy(kept, memory, size)
         copy(kept_rate, rate, RATE_SIZE)
@@ -273,8 +266,8 @@ def _any_constraint(drive: Any, workspace: Any) -> bool:
 @internal
 def _gets_on(drive: Any, t: float) -> bool:
     """False if the guard against runs that events keep from going on would speak (`events/progress.py`)."""
-    goals, counts, guard = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
-    if t == goals[HANDLED_AT] and counts[HERE] >= MOST_AT_ONCE:
+    goals, counts, guard = goals_at(drive.goals), counts_at(drive.counts), vec(drive.guard, GUARD_SIZE)
+    if t == goals.handled_at and counts.here >= MOST_AT_ONCE:
         return False
     if guard[GUARDED] < IN_A_ROW:
         return True
@@ -284,8 +277,8 @@ def _gets_on(drive: Any, t: float) -> bool:
 @internal
 def _count(drive: Any, t: float) -> None:
     """One more instant."""
-    counts, guard = ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
-    counts[HANDLED] += 1
+    counts, guard = counts_at(drive.counts), vec(drive.guard, GUARD_SIZE)
+    counts.handled += 1
     guard[GUARDED] += 1.0
     if guard[GUARDED] > IN_A_ROW:
         guard[COUNTED_SINCE], guard[GUARDED] = t, 0.0

@@ -13,8 +13,15 @@ from ..methods.history import history_time
 from ..rounding import DEEPEST, FIRST_PENETRATION, FIRST_TOUCH, GAP_ROUNDING, LEAST_APPROACH
 from ..state.impact_law_codes import BY_FORCE
 from ..state.modes import ACTIVE, OPEN, RELEASED, memories_at
-from ..state.run_records import CLOCK_SIZE, CLOSE, FORCE_NUMBERS, OPENS, STEP_SIZE, call_accelerations, loop_at
-from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
+from ..state.run_records import (
+    CLOSE,
+    FORCE_NUMBERS,
+    OPENS,
+    call_accelerations,
+    clock_at,
+    loop_at,
+)
+from ..state.workspace_records import OK, control_at
 from .records import NO_ACCELERATIONS, SETTLED, call_part, delassus, scalars
 from .report import report
 
@@ -57,7 +64,7 @@ def _begin(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any, k: 
     size, approach = vec(workspace.row_scale, workspace.m_ext)[row], -vec(workspace.phid, workspace.m_ext)[row]
     least = vec(drive.least_approach, workspace.n_contacts)[k]
     if least < 0.0:
-        least = LEAST_APPROACH * vec(workspace.control, CONTROL_SIZE)[RATE_SCALE] * size
+        least = LEAST_APPROACH * control_at(workspace.control).rate_scale * size
     pressing, settling, mass = -vec(workspace.phidd, workspace.m_ext)[row], 0.0, 0.0
     if pressing > 0.0 or (approach < least and ivec(drive.by_approach, workspace.n_contacts)[k] != 0):
         ivec(instant.contacts, instant.most)[0], scalars(instant).count = k, 1
@@ -189,5 +196,5 @@ def _loss(drive: Any, workspace: Any, k: int) -> float:
 def _start_small(loop: Any, size: float, speed: float) -> None:
     """Begin with a step in which the gap closes by FIRST_TOUCH of its size, so that the error control sees the force
     grow: a step over the whole contact would find no force at its stages."""
-    clock = vec(loop.clock, CLOCK_SIZE)
-    clock[STEP_SIZE] = min(clock[STEP_SIZE], FIRST_TOUCH * size / speed)
+    clock = clock_at(loop.clock)
+    clock.step_size = min(clock.step_size, FIRST_TOUCH * size / speed)

@@ -9,7 +9,7 @@ from ..methods.history import history_time
 from ..rounding import ENERGY_GAIN, FORCE_ROUNDING
 from ..state.modes import OPEN, memories_at
 from ..state.run_records import GAINS, GRAZE, IMPACT, ROUNDS
-from ..state.workspace_records import COUNTERS_SIZE, IMPACTS_IN_ROUNDS
+from ..state.workspace_records import counters_at
 from .reading import unresolved_speed
 from .records import NO_FORCES, SETTLED, call_part, scalars, touching
 from .report import report
@@ -140,7 +140,7 @@ def _account(instant: Any, drive: Any, workspace: Any, method: Any, gain: float)
     memory, t = memories_at(workspace.memory, workspace.n_contacts), history_time(method, 0)
     impulse, loss, approach = contact.impact_impulse, contact.impact_loss, contact.approach_speed
     least, in_rounds, graze = 0.0, scalars(instant).in_rounds, True
-    ivec(workspace.counters, COUNTERS_SIZE)[IMPACTS_IN_ROUNDS] += in_rounds
+    counters_at(workspace.counters).impacts_in_rounds += in_rounds
     for i in range(count):
         least = max(least, FORCE_ROUNDING * impulse[i])
         if gain > 0.0:

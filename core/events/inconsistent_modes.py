@@ -9,7 +9,7 @@ from ..compiled.views import ivec, vec
 from ..rounding import FORCE_ROUNDING, SLIP_EXCESS
 from ..state.impact_law_codes import AT_MASSLESS
 from ..state.modes import CLOSED, memories_at
-from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE, call_accelerations
+from ..state.run_records import call_accelerations, clock_at
 from ..state.workspace_records import OK, structure_at
 from .rates import read_level
 from .reading import comes_back
@@ -76,7 +76,7 @@ def _returns_at_once(instant: Any, drive: Any, workspace: Any, method: Any, loop
     """YES if contact k, closed, pulls by no more than lets its gap open by what could not be told from zero before it
     closes again. The next step then goes beyond that. NO, or what is wanted to know it."""
     contact = touching(instant)
-    memory, clock = memories_at(workspace.memory, workspace.n_contacts)[k], vec(loop.clock, CLOCK_SIZE)
+    memory, clock = memories_at(workspace.memory, workspace.n_contacts)[k], clock_at(loop.clock)
     mode, slide, ratio, axis = memory.mode, memory.slide_mode, memory.friction_ratio, memory.tangent_axis
     ivec(instant.contacts, instant.most)[0], scalars(instant).count = k, 1
     motion, jerks = contact.free_gap_acceleration, vec(instant.jerks, instant.most)
@@ -105,7 +105,7 @@ def _returns_at_once(instant: Any, drive: Any, workspace: Any, method: Any, loop
     if status != SETTLED or not motion[0] > 0.0 or not comes_back(workspace, k, jerks[0], motion[0]):
         return NO
     # b + j t, the acceleration of the open gap, has turned well before this
-    clock[STEP_SIZE] = max(clock[STEP_SIZE], min(4.0 * motion[0] / -jerks[0], clock[MAX_STEP]))
+    clock.step_size = max(clock.step_size, min(4.0 * motion[0] / -jerks[0], clock.max_step))
     return YES
 
 

@@ -6,7 +6,7 @@ from ..assembly.levels import position_level
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import FORCE_ROUNDING
-from ..state.workspace_records import CONTROL_SIZE, ENERGY_SCALE
+from ..state.workspace_records import control_at
 from .records import scalars, touching
 
 
@@ -16,7 +16,7 @@ def note_loaded(instant: Any, workspace: Any) -> None:
     count, contacts, largest = (
         scalars(instant).count,
         ivec(instant.contacts, instant.most),
-        vec(workspace.control, CONTROL_SIZE)[ENERGY_SCALE],
+        control_at(workspace.control).energy_scale,
     )
     level, rows, scale = (
         position_level(workspace),

@@ -10,7 +10,7 @@ from ..compiled.views import ivec, vec
 from ..contact_solvers.complementarity import MANY
 from ..rounding import DIRECTION_RANK, UNSOLVED
 from ..state.modes import OPEN, memories_at
-from ..state.run_records import CLOCK_SIZE, CROWDED
+from ..state.run_records import clock_at
 from ..state.workspace_records import building_at
 from .active_set import choose
 from .friction_rows import LOOSEST_RANK, RANK_OF_MANY
@@ -52,7 +52,7 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
         ivec(instant.contacts, instant.most),
         largest_acceleration(workspace),
     )
-    crowded = vec(loop.clock, CLOCK_SIZE)[CROWDED] != 0.0
+    crowded = clock_at(loop.clock).crowded != 0.0
     friction, static = vec(drive.friction, workspace.n_contacts), vec(workspace.contact_sticking, workspace.n_contacts)
     compliance, rows = (
         vec(building_at(workspace.building).compliance, workspace.m_ext),

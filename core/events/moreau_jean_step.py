@@ -19,8 +19,17 @@ from ..contact_solvers.row_sweeps import press_apart, sweep_rows
 from ..methods.history import history_time
 from ..rounding import GAP_ROUNDING
 from ..state.modes import CLOSED, memories_at
-from ..state.run_records import CALM, CLOCK_SIZE, IMPACT, PUSHED_FROM, PUSHES, PUSHES_LEFT, call_accelerations, loop_at
-from ..state.workspace_records import CONTROL_SIZE, COUNTERS_SIZE, OK, RATE_SCALE, UNFINISHED_SWEEPS
+from ..state.run_records import (
+    IMPACT,
+    call_accelerations,
+    clock_at,
+    loop_at,
+)
+from ..state.workspace_records import (
+    OK,
+    control_at,
+    counters_at,
+)
 from .constraint_projection import meet_positions, meet_rates
 from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows, part, prepare_rows, room, rows_of
 from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
@@ -45,8 +54,8 @@ so that a crowd that comes back at once is not looked at again and again."""
 def push_apart(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Push apart what overlaps at the end of a step of impulses, which is the newest row."""
     loop = loop_at(drive.loop)
-    clock, t, energy = vec(loop.clock, CLOCK_SIZE), history_time(method, 0), vec(workspace.energy, 3)
-    h = t - clock[PUSHED_FROM]
+    clock, t, energy = clock_at(loop.clock), history_time(method, 0), vec(workspace.energy, 3)
+    h = t - clock.pushed_from
     if not find_touching(instant, drive, workspace):
         return WANTS_ROOM
     held = _look(instant, workspace)
@@ -75,8 +84,8 @@ def push_apart(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     if call_accelerations(drive.accelerations, workspace) != OK:
         return NO_ACCELERATIONS
     scalars(instant).touched = scalars(instant).count
-    clock[PUSHED_FROM], clock[CALM] = t, 0.0 if changed else clock[CALM] + 1.0
-    if clock[PUSHES_LEFT] <= 0.0 or clock[CALM] >= max(QUIET, QUIET_PART * clock[PUSHES]):
+    clock.pushed_from, clock.calm = t, 0.0 if changed else clock.calm + 1.0
+    if clock.pushes_left <= 0.0 or clock.calm >= max(QUIET, QUIET_PART * clock.pushes):
         end_pushing(workspace, loop, t)
         _leave_unsettled(instant, workspace)
     elif h > 0.0:
@@ -142,7 +151,7 @@ def _bounce(instant: Any, drive: Any, workspace: Any, h: float) -> None:
     off, rate, takes = part(instant, rows, OFF), part(instant, rows, BEFORE), part(instant, rows, TAKES)
     contact_rows, alone = ivec(workspace.contact_rows, workspace.n_contacts), only_impulses(loop_at(drive.loop))
     # of a crowd, whose steps are a part of the model's own time; those of a whole run may be any
-    falls_of_model = 0.0 if alone else vec(workspace.control, CONTROL_SIZE)[RATE_SCALE] ** 2
+    falls_of_model = 0.0 if alone else control_at(workspace.control).rate_scale ** 2
     for i in range(scalars(instant).count):
         k, approach, falls = contacts[i], -rate[i], max(contact[i].closing_acceleration, 0.0)
         e = vec(drive.restitution, workspace.n_contacts)[k]
@@ -177,7 +186,7 @@ def _push(instant: Any, drive: Any, workspace: Any, h: float) -> None:
         tolerance, drive.most_sweeps,
     )  # fmt: skip
     if left > tolerance:
-        ivec(workspace.counters, COUNTERS_SIZE)[UNFINISHED_SWEEPS] += 1
+        counters_at(workspace.counters).unfinished_sweeps += 1
     for j in range(n):
         v[j] += x[j]
         q[j] += 0.5 * h * x[j]

@@ -18,14 +18,9 @@ from ..linalg.record import WANT_ROOM as NO_MEMORY
 from ..linalg.row_pivoting import eliminate
 from ..rounding import RANK_TOLERANCE
 from ..state.workspace_records import (
-    ANALYSES,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FIRST_SENSITIVITY,
     OK,
-    PARTITIONS,
-    RATE_SIZE,
-    SENSITIVITY,
+    convergence_at,
+    counters_at,
     structure_at,
 )
 from .records import OF_ELIMINATION, REPEATED_ROWS, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANTS_ROOM, scalars
@@ -40,9 +35,9 @@ def use_modes(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     status = _choose_partition(instant, workspace)
     if status != SETTLED:
         return status
-    counters, rate = ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE)
-    counters[PARTITIONS] += 1
-    counters[ANALYSES] += 1
+    counters, rate = counters_at(workspace.counters), convergence_at(workspace.rate)
+    counters.partitions += 1
+    counters.analyses += 1
     code = analyze_equations(workspace, workspace.kkt)
     if code == OK and workspace.m_act > 0:
         code = call_analyze(workspace.analyze, lu_at(workspace.lu_d), workspace.values)
@@ -53,7 +48,7 @@ def use_modes(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     if follow(lu_at(workspace.kkt_query), lu_at(workspace.kkt)) != OK:
         return WANT_MEMORY
     set_probe(workspace)
-    rate[FACTOR_AGE], rate[SENSITIVITY], rate[FIRST_SENSITIVITY] = -1.0, 0.0, -1.0
+    rate.factor_age, rate.sensitivity, rate.first_sensitivity = -1.0, 0.0, -1.0
     return SETTLED
 
 

@@ -10,7 +10,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..rounding import BRAKED, FORCE_ROUNDING, NEAR_ZERO, PERHAPS_REST, RATE_ROUNDING, REACHES_LIMIT, UNRESOLVED
 from ..state.modes import CLOSED, IDLE, memories_at
-from ..state.workspace_records import CONTROL_SIZE, RTOL
+from ..state.workspace_records import control_at
 from .records import scalars, touching
 
 
@@ -26,7 +26,7 @@ def largest_acceleration(workspace: Any) -> float:
 @internal
 def slow_sliding(workspace: Any, k: int) -> float:
     """Sliding speed of contact k in space whose direction error control does not resolve, m/s."""
-    return float(vec(workspace.control, CONTROL_SIZE)[RTOL] * rate_size(workspace, k))
+    return float(control_at(workspace.control).rtol * rate_size(workspace, k))
 
 
 @internal

@@ -3,9 +3,9 @@
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat
-from ..state.run_records import COUNTS_SIZE, EVENT_SIZE, EVENTS, LEFT_APPROACH, UNSHARED_LOAD
-from ..state.workspace_records import COUNTERS_SIZE, LEFT_APPROACHES, UNSHARED_LOADS
+from ..compiled.views import mat
+from ..state.run_records import EVENT_SIZE, LEFT_APPROACH, UNSHARED_LOAD, counts_at
+from ..state.workspace_records import counters_at
 from .records import scalars
 
 MOST_EVENTS = 10
@@ -16,7 +16,7 @@ sliding or sticking; and what has not been found."""
 @internal
 def room_for(drive: Any, count: int) -> bool:
     """True if there is room for `count` more events."""
-    return bool(ivec(drive.counts, COUNTS_SIZE)[EVENTS] + count <= drive.event_rows)
+    return bool(counts_at(drive.counts).events + count <= drive.event_rows)
 
 
 @internal
@@ -25,9 +25,9 @@ def report(
     residual: float, friction: float,
 ) -> None:  # fmt: skip
     """An event of contact k at time t; numbers as in `Event`."""
-    counts = ivec(drive.counts, COUNTS_SIZE)
-    row = mat(drive.events, drive.event_rows, EVENT_SIZE)[counts[EVENTS]]
-    counts[EVENTS] += 1
+    counts = counts_at(drive.counts)
+    row = mat(drive.events, drive.event_rows, EVENT_SIZE)[counts.events]
+    counts.events += 1
     row[0], row[1], row[2], row[3], row[4] = t, kind, k, impulse, loss
     row[5], row[6], row[7], row[8] = approach, separation, residual, friction
 
@@ -35,10 +35,11 @@ def report(
 @internal
 def report_not_found(instant: Any, drive: Any, workspace: Any, t: float) -> None:
     """Count an instant at which loads have not been shared, or an approach has been left, and say so."""
-    for who, counter, kind in (
-        (scalars(instant).unshared_contact, UNSHARED_LOADS, UNSHARED_LOAD),
-        (scalars(instant).approaching_contact, LEFT_APPROACHES, LEFT_APPROACH),
-    ):
-        if who != 0:
-            ivec(workspace.counters, COUNTERS_SIZE)[counter] += 1
-            report(drive, t, kind, who - 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    unshared, approaching = scalars(instant).unshared_contact, scalars(instant).approaching_contact
+    counters = counters_at(workspace.counters)
+    if unshared != 0:
+        counters.unshared_loads += 1
+        report(drive, t, UNSHARED_LOAD, unshared - 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if approaching != 0:
+        counters.left_approaches += 1
+        report(drive, t, LEFT_APPROACH, approaching - 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

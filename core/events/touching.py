@@ -15,7 +15,7 @@ from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import CLOSED, STICKS, memories_at
-from ..state.run_records import COUNTS_SIZE, HERE
+from ..state.run_records import counts_at
 from .records import IMMOVABLE_CONTACT, OF_CONTACTS, SETTLED, delassus, scalars, touching
 
 
@@ -232,4 +232,4 @@ def free_jerks(instant: Any, workspace: Any, jerks: Any) -> None:
 @internal
 def looks_again(drive: Any) -> int:
     """How often events have been handled at this instant, this time included."""
-    return int(ivec(drive.counts, COUNTS_SIZE)[HERE])
+    return int(counts_at(drive.counts).here)

@@ -17,7 +17,7 @@ from ..linalg.small import call_least_norm
 from ..methods.history import history_time
 from ..rounding import DIRECTION_RANK, REACHES_LIMIT, REACHES_LIMIT_NOW
 from ..state.run_records import IMPACT
-from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from ..state.workspace_records import control_at
 from .independent_directions import cones_at
 from .loaded import note_loaded
 from .rates import masses, pressing, push, solve_cone_problem
@@ -66,7 +66,7 @@ def moment_asked(instant: Any, drive: Any, workspace: Any) -> float:
             part = OF_A_CROWD
     if again >= 0:
         part = max(part, min(SHORT * 10.0**again, LONG))
-    return part / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
+    return part / control_at(workspace.control).rate_scale
 
 
 @internal
@@ -78,7 +78,7 @@ def moment_of_wedge(instant: Any, workspace: Any) -> float:
             speed = max(speed, abs(touching(instant)[i].sliding_rate), abs(touching(instant)[i].sliding_rate2))
     if largest == 0.0:
         return 0.0
-    return max(WEDGED * speed / largest, SHORT / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
+    return max(WEDGED * speed / largest, SHORT / control_at(workspace.control).rate_scale)
 
 
 @internal

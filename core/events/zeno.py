@@ -26,23 +26,11 @@ from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import CLOSED, memories_at
 from ..state.modes import STEP_FORCES as BLOCKS
 from ..state.run_records import (
-    CALM,
-    CLOCK_SIZE,
-    COUNTS_SIZE,
-    CROWDED,
-    FIXED_STEP,
-    HERE,
-    PUSH_STEP,
-    PUSHED_FROM,
-    PUSHED_UNTIL,
-    PUSHES,
-    PUSHES_LEFT,
-    STEP_SIZE,
-    WINDOW_COUNT,
-    WINDOW_START,
+    clock_at,
+    counts_at,
     loop_at,
 )
-from ..state.workspace_records import CONTROL_SIZE, RATE_SCALE
+from ..state.workspace_records import control_at
 from .progress import COUNTED_SINCE, EVENTS_COUNTED, GUARD_SIZE
 from .records import DECLINED, SETTLED
 
@@ -66,21 +54,21 @@ SOON = 64
 def count_instant(workspace: Any, loop: Any, t: float, touching: int, spatial: bool) -> bool:
     """One more instant, at time t, with so many touching contacts, many of them in space or not; True if the run is to
     go on in steps of impulses."""
-    clock = vec(loop.clock, CLOCK_SIZE)
-    many = touching >= MANY_TOUCH and clock[PUSH_STEP] == 0.0
-    clock[WINDOW_COUNT] += 1.0
-    again = clock[PUSHES] > 0.0 and t <= clock[PUSHED_UNTIL] + _size(workspace) and clock[WINDOW_COUNT] >= FEW_AGAIN
-    if clock[WINDOW_COUNT] >= WINDOW:
-        span = abs(t - clock[WINDOW_START]) * vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
-        clock[CROWDED] = 1.0 if span < NEXT_TO_NO_TIME else 0.0
-        clock[WINDOW_START], clock[WINDOW_COUNT] = t, 0.0
+    clock = clock_at(loop.clock)
+    many = touching >= MANY_TOUCH and clock.push_step == 0.0
+    clock.window_count += 1.0
+    again = clock.pushes > 0.0 and t <= clock.pushed_until + _size(workspace) and clock.window_count >= FEW_AGAIN
+    if clock.window_count >= WINDOW:
+        span = abs(t - clock.window_start) * control_at(workspace.control).rate_scale
+        clock.crowded = 1.0 if span < NEXT_TO_NO_TIME else 0.0
+        clock.window_start, clock.window_count = t, 0.0
         again = again or span < (IN_SPACE if spatial else NEXT_TO_NO_TIME_OF_MANY)
     return bool(many and again)
 
 
 @internal
 def _size(workspace: Any) -> float:
-    return float(SIZE / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
+    return float(SIZE / control_at(workspace.control).rate_scale)
 
 
 @internal
@@ -92,15 +80,15 @@ def only_impulses(loop: Any) -> bool:
 @internal
 def pushed_lately(workspace: Any, loop: Any, t: float) -> bool:
     """True if the last row of steps of impulses ended a short time before t."""
-    clock = vec(loop.clock, CLOCK_SIZE)
-    return bool(clock[PUSHES] > 0.0 and t <= clock[PUSHED_UNTIL] + SOON * _size(workspace))
+    clock = clock_at(loop.clock)
+    return bool(clock.pushes > 0.0 and t <= clock.pushed_until + SOON * _size(workspace))
 
 
 @internal
 def near_level(workspace: Any, h: float) -> float:
     """Gaps in parts of their rows' scales that count as none at the end of a step of impulses of h (s): those that the
     model's own accelerations close within the next one. What rests presses in each step then, not in every other."""
-    way = h * vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
+    way = h * control_at(workspace.control).rate_scale
     return float(GAP_ROUNDING * position_level(workspace) + 0.5 * way * way)
 
 
@@ -139,14 +127,14 @@ def step_through(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     """Go on from the newest row by steps of impulses; DECLINED, and nothing has happened, where there are none."""
     loop = loop_at(drive.loop)
     if (
-        vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0
+        clock_at(loop.clock).push_step != 0.0
         or not may_push(drive, workspace, method)
         or _make_pending(drive, workspace) < MANY_TOUCH
     ):
         return DECLINED
     steps = float(FEWEST)
     if pushed_lately(workspace, loop, history_time(method, 0)):
-        steps = min(2.0 * vec(loop.clock, CLOCK_SIZE)[PUSHES], MOST)
+        steps = min(2.0 * clock_at(loop.clock).pushes, MOST)
     _begin_row(drive, workspace, method, loop, steps)
     return SETTLED
 
@@ -160,14 +148,14 @@ def begin_impulses(drive: Any, workspace: Any, method: Any, loop: Any) -> None:
 
 @internal
 def _begin_row(drive: Any, workspace: Any, method: Any, loop: Any, steps: float) -> None:
-    t, guard, clock = history_time(method, 0), vec(drive.guard, GUARD_SIZE), vec(loop.clock, CLOCK_SIZE)
-    fixed = clock[FIXED_STEP] if only_impulses(loop) else 0.0
-    clock[PUSHES] = clock[PUSHES_LEFT] = steps
-    clock[PUSH_STEP], clock[CALM], clock[PUSHED_FROM] = fixed if fixed > 0.0 else _size(workspace), 0.0, t
+    t, guard, clock = history_time(method, 0), vec(drive.guard, GUARD_SIZE), clock_at(loop.clock)
+    fixed = clock.fixed_step if only_impulses(loop) else 0.0
+    clock.pushes = clock.pushes_left = steps
+    clock.push_step, clock.calm, clock.pushed_from = fixed if fixed > 0.0 else _size(workspace), 0.0, t
     if any_force_law(drive, workspace):
-        clock[STEP_SIZE] = clock[PUSH_STEP]
+        clock.step_size = clock.push_step
     # these steps get on
-    ivec(drive.counts, COUNTS_SIZE)[HERE], guard[COUNTED_SINCE], guard[EVENTS_COUNTED] = 0, t, 0.0
+    counts_at(drive.counts).here, guard[COUNTED_SINCE], guard[EVENTS_COUNTED] = 0, t, 0.0
 
 
 @internal
@@ -194,9 +182,9 @@ def _make_pending(drive: Any, workspace: Any) -> int:
 @internal
 def end_pushing(workspace: Any, loop: Any, t: float) -> None:
     """What touches now is for an instant of its own to settle."""
-    clock = vec(loop.clock, CLOCK_SIZE)
-    clock[PUSH_STEP] = clock[PUSHES_LEFT] = clock[CALM] = clock[PUSHED_FROM] = 0.0
-    clock[PUSHED_UNTIL], clock[WINDOW_START], clock[WINDOW_COUNT] = t, t, 0.0
+    clock = clock_at(loop.clock)
+    clock.push_step = clock.pushes_left = clock.calm = clock.pushed_from = 0.0
+    clock.pushed_until, clock.window_start, clock.window_count = t, t, 0.0
     for k in range(workspace.n_contacts):
         for block in range(BLOCKS):
             memories_at(workspace.memory, workspace.n_contacts)[k].step_force[block] = 0.0

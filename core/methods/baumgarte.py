@@ -15,7 +15,7 @@ from ..assembly.evaluate import evaluate_power
 from ..compiled.jit import inlined, internal
 from ..compiled.views import vec
 from ..stage.solver import weighted_norm
-from ..state.workspace_records import CONTROL_SIZE, OK, STAGE_ALPHA, STAGE_BETA, call_stage
+from ..state.workspace_records import OK, call_stage, control_at
 from .explicit import explicit_step
 from .history import history_row, history_time
 from .multistep import rows_available
@@ -29,11 +29,11 @@ ALPHA, BETA, BY_STEP, SCHEME = 0, 1, 2, 3
 
 @inlined
 def _set_stabilisation(workspace: Any, parameters: Any, h: float) -> None:
-    control = vec(workspace.control, CONTROL_SIZE)
+    control = control_at(workspace.control)
     if parameters[BY_STEP] != 0.0:
-        control[STAGE_ALPHA], control[STAGE_BETA] = 1.0 / h, np.sqrt(2.0) / h
+        control.stage_alpha, control.stage_beta = 1.0 / h, np.sqrt(2.0) / h
     else:
-        control[STAGE_ALPHA], control[STAGE_BETA] = parameters[ALPHA], parameters[BETA]
+        control.stage_alpha, control.stage_beta = parameters[ALPHA], parameters[BETA]
 
 
 @internal

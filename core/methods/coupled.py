@@ -22,26 +22,15 @@ from ..stage.inner import inner_loop
 from ..stage.matrices import refactor
 from ..stage.solver import LEAST_RATE, MOST_INNER, RATE_GROWTH, solve_increment
 from ..state.workspace_records import (
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
     COUPLED_STAGES,
-    FACTOR_AGE,
-    FACTOR_CV,
-    FAILED_NORM,
-    INNER,
-    MAX_OUTER,
-    NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
-    OUTER,
     OUTER_DIVERGED,
-    OUTER_LOOP,
     OUTER_SLOW,
-    POSITION_TOLERANCE,
-    RATE_SIZE,
     REANALYZE,
-    RTOL,
-    STAGES,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .guess import FROM_REST, best_guess, guess_stages
 from .multistep import weight_rows
@@ -90,7 +79,7 @@ def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple
     c_v, status = h * table[EMBEDDED, GAMMA], OK
     q, v, active = vec(workspace.q, n), vec(workspace.v, n), ivec(workspace.active, multipliers)
     increment = vec(workspace.rhs, workspace.n + multipliers)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    counters = counters_at(workspace.counters)
     for i in range(stage_count(method)):
         row = rows[i]
         for j in range(i):
@@ -110,7 +99,7 @@ def _sweep(workspace: Any, method: Any, t: float, h: float, slack: float, simple
         if status != OK:
             return status
         solve_increment(workspace, workspace.kkt)
-        counters[OUTER] += 1
+        counters.outer += 1
         to_formula(workspace, row, increment)
         for l in range(workspace.n):
             # with what the inner loop has corrected: the next sweep need not find it again
@@ -157,16 +146,16 @@ def _move(workspace: Any, method: Any, h: float) -> float:
 @internal
 def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> int:
     """Sweeps until the stages have converged."""
-    control, memory = vec(workspace.control, CONTROL_SIZE), weight_rows(method)[MEMORY]
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    control, memory = control_at(workspace.control), weight_rows(method)[MEMORY]
+    counters = counters_at(workspace.counters)
     stages = stage_count(method)
-    tolerance = control[NEWTON_TOLERANCE]
+    tolerance = control.newton_tolerance
     # before the sweeps have converged, the constraints need to hold only a hundred times better than they do
-    slack = max(1.0, min(1e4, 0.01 * tolerance * control[RTOL] / control[POSITION_TOLERANCE]))
-    start_inner = counters[INNER]
+    slack = max(1.0, min(1e4, 0.01 * tolerance * control.rtol / control.position_tolerance))
+    start_inner = counters.inner
     previous, before = np.inf, np.inf
     renewed = 0
-    for k in range(int(control[MAX_OUTER]) * (1 if simple else SWEEPS)):
+    for k in range(int(control.max_outer) * (1 if simple else SWEEPS)):
         own = k == 0 and workspace.n_spins > 0 and not simple
         status = _sweep(workspace, method, t, h, slack, simple, own)
         if status != OK:
@@ -183,7 +172,7 @@ def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> i
                 stalled = norm > 0.8 * before
                 if (simple and contraction > 0.9) or (stalled and renewed > 0):
                     memory[SWEEP_RATE] = 1.0
-                    vec(workspace.rate, RATE_SIZE)[FAILED_NORM] = contraction
+                    convergence_at(workspace.rate).failed_norm = contraction
                     return OUTER_DIVERGED
                 slow = contraction > SLOW_SWEEP and k > 1
                 renew = not simple and renewed < 2 and (slow or contraction > EXPLODING)
@@ -193,7 +182,7 @@ def _iterate(workspace: Any, method: Any, t: float, h: float, simple: bool) -> i
                 # a contraction of earlier steps is trusted less and less
                 memory[SWEEP_RATE] = known * RATE_GROWTH
             memory[LAST_SWEEPS] = k + 1
-            memory[INNER_EACH] = (counters[INNER] - start_inner) / stages
+            memory[INNER_EACH] = (counters.inner - start_inner) / stages
             memory[LAST_STEP] = h
             return OK
         before, previous = previous, norm
@@ -213,15 +202,15 @@ def solve_coupled(workspace: Any, method: Any, t: float, h: float) -> int:
 
     On failure with old matrices it tries once more with new ones, then once more from stages at rest.
     """
-    rate, memory = vec(workspace.rate, RATE_SIZE), weight_rows(method)[MEMORY]
+    rate, memory = convergence_at(workspace.rate), weight_rows(method)[MEMORY]
     stages = stage_count(method)
-    simple = vec(workspace.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0
-    ivec(workspace.counters, COUNTERS_SIZE)[STAGES] += stages
+    simple = control_at(workspace.control).outer_loop == 1.0
+    counters_at(workspace.counters).stages += stages
     if h > memory[LAST_STEP] > 0.0:
         memory[SWEEP_RATE] *= (h / memory[LAST_STEP]) ** 2
-    other_step = abs(h * weight_rows(method)[EMBEDDED, GAMMA] / rate[FACTOR_CV] - 1.0) > STEP_CHANGE
+    other_step = abs(h * weight_rows(method)[EMBEDDED, GAMMA] / rate.factor_cv - 1.0) > STEP_CHANGE
     fresh = (
-        rate[FACTOR_AGE] < 0.0
+        rate.factor_age < 0.0
         or memory[LAST_SWEEPS] > MOST_SWEEPS
         or memory[INNER_EACH] > MOST_INNER
         or (other_step and memory[SWEEP_RATE] > STIFF_RATE)
@@ -236,7 +225,7 @@ def solve_coupled(workspace: Any, method: Any, t: float, h: float) -> int:
             status = _refactor(workspace, method, t, h, simple)
             if status != OK:
                 return status
-        rate[FACTOR_AGE] += stages
+        rate.factor_age += stages
         status = _iterate(workspace, method, t, h, simple)
         if status == OK or status == REANALYZE:
             break

@@ -19,7 +19,7 @@ from ..stage.frame_motion import INERTIA, SPEED, set_free, set_precession
 from ..stage.free_rotation import free_acceleration, set_inertia
 from ..stage.quaternions import four_of, put_four
 from ..state.method_records import CHOICE_SIZE, K
-from ..state.workspace_records import CONTROL_SIZE, RTOL, SPIN_SIZE
+from ..state.workspace_records import SPIN_SIZE, control_at
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -145,7 +145,7 @@ def _choose_frame(workspace: Any, method: Any, spin: Any, k: int, i: int, t: flo
     w = space_rate(four_of(row, i), four_of(row, n + i))
     size = h * np.sqrt(_dot(w, w))
     order = max(vec(method.choice, CHOICE_SIZE)[K], 2.0)
-    negligible = min(NEGLIGIBLE, PART * vec(workspace.control, CONTROL_SIZE)[RTOL])
+    negligible = min(NEGLIGIBLE, PART * control_at(workspace.control).rtol)
     if 2.0 * size > MOST_TURN or size ** (order + 1.0) < negligible:
         return False
     rows = min(rows_available(method), 3)

@@ -11,14 +11,11 @@ from ..stage.frame_motion import SPEED
 from ..stage.quaternions import four_of, plus_times, put_four
 from ..state.method_records import CARRIES, CHOICE_SIZE, ESTIMATE, NEXT_K, NEXT_NORM, PREDICTS, RING_SIZE, call_step
 from ..state.workspace_records import (
-    CONTROL_SIZE,
-    EXACTNESS,
-    NEWTON_TOLERANCE,
     OK,
-    RATE_SIZE,
     REANALYZE,
-    SENSITIVITY,
     SPIN_SIZE,
+    control_at,
+    convergence_at,
 )
 from .frame_choice import choose_frames
 from .frame_partition import partition_ends
@@ -131,24 +128,24 @@ def step_in_frames(workspace: Any, method: Any, step: int, h: float) -> int:
     """
     if workspace.n_attitudes == 0 or vec(method.parameters, 8)[ESTIMATE] == 0.0:
         return call_step(step, workspace, method, h)
-    error, control = vec(method.error, 2), vec(workspace.control, CONTROL_SIZE)
-    newton, exactness = control[NEWTON_TOLERANCE], control[EXACTNESS]
+    error, control = vec(method.error, 2), control_at(workspace.control)
+    newton, exactness = control.newton_tolerance, control.exactness
     finer = FINER
     while True:
         _begin(workspace, method, history_time(method, 0) + h, vec(method.parameters, 8)[PREDICTS] != 0.0)
         fastest = _fastest(workspace)
         if h * fastest <= FAST * LARGEST_TURN:
             finer = 1.0
-        control[NEWTON_TOLERANCE], control[EXACTNESS] = finer * newton, finer * exactness
+        control.newton_tolerance, control.exactness = finer * newton, finer * exactness
         status = call_step(step, workspace, method, h)
         if status == OK and partition_ends(workspace, h):
-            vec(workspace.rate, RATE_SIZE)[SENSITIVITY] = np.inf
+            convergence_at(workspace.rate).sensitivity = np.inf
         _end(workspace, method, status == OK)
         if status == OK or status == REANALYZE or finer == 1.0:
             break
         # rounding does not let the loops come so far: a dependent parameter passes zero
         finer = min(1.0, COARSER * finer)
-    control[NEWTON_TOLERANCE], control[EXACTNESS] = newton, exactness
+    control.newton_tolerance, control.exactness = newton, exactness
     error[0] = max(error[0], _turn_error(h, fastest, error[1]))
     return status
 

@@ -21,7 +21,11 @@ from ..stage.corotating import enter_frame, leave_frame
 from ..stage.inner import inner_loop
 from ..stage.solver import weighted_norm
 from ..state.method_records import ESTIMATE
-from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, LAST_INNER, LAST_OUTER, OK, RATE_SIZE
+from ..state.workspace_records import (
+    OK,
+    convergence_at,
+    counters_at,
+)
 from .coupled import solve_coupled
 from .history import history_row, history_time
 from .multistep import finish_stage, weight_rows
@@ -80,9 +84,9 @@ def _embedded(workspace: Any, method: Any, t: float, h: float) -> int:
         v_star[l] = old[n + l] + h * p_v
         q_star[l] = old[l] + h * p_q + c_v * v_star[l]
     _extrapolate_to_end(workspace, method)
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     # whether the matrices are good enough is for the sweeps to say
-    rate[LAST_OUTER], rate[LAST_INNER] = 0.0, 0.0
+    rate.last_outer, rate.last_inner = 0.0, 0.0
     status = finish_stage(workspace, t + h, c_v)
     q, v = vec(workspace.q, n), vec(workspace.v, n)
     hat_q, hat_v = vec(workspace.base_q, n), vec(workspace.base_v, n)
@@ -119,7 +123,7 @@ def _end(workspace: Any, method: Any, t: float, h: float) -> int:
         status = inner_loop(workspace, workspace.lu_d, 1.0, np.inf)
         if status == OK:
             status = solve_accelerations(workspace)
-            ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+            counters_at(workspace.counters).factorizations += 1
     for l in range(n - workspace.n_work, n):
         work = 0.0
         for i in range(stages):

@@ -13,7 +13,7 @@ import numpy as np
 from ..compiled.jit import internal
 from ..compiled.views import vec
 from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
-from ..state.workspace_records import CONTROL_SIZE, OK, STIFFNESS_SCALE
+from ..state.workspace_records import OK, control_at
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
 from .multistep import COUNT_ROW, difference_norm, rows_available, weight_rows
@@ -75,7 +75,7 @@ def select_stable_k(workspace: Any, method: Any, h: float) -> int:
     far beyond the step; among the vibrations of a mesh there are always some in between, which grow.
     """
     choice, parameters = vec(method.choice, CHOICE_SIZE), vec(method.parameters, 8)
-    k, angle = parameters[LEAST_K], h * np.sqrt(vec(workspace.control, CONTROL_SIZE)[STIFFNESS_SCALE])
+    k, angle = parameters[LEAST_K], h * np.sqrt(control_at(workspace.control).stiffness_scale)
     choice[NEXT_K] = 0.0
     if choice[K] > k and angle > RESOLVED:
         choice[NEXT_K], choice[NEXT_NORM] = k, vec(method.error, 2)[0]

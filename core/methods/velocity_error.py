@@ -22,7 +22,7 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..stage.corotating import enter_frame, recall_point
 from ..stage.solver import weighted_norm
-from ..state.workspace_records import COUNTERS_SIZE, FACTORIZATIONS, OK, REANALYZE
+from ..state.workspace_records import OK, REANALYZE, counters_at
 from .history import history_row, history_time
 from .multistep import rows_available
 
@@ -173,7 +173,7 @@ def absolute_velocity_error(workspace: Any, method: Any, h: float, shift: float,
         evaluate_tangent(workspace, 0.0, 0.0)
         if factor_equations(workspace, workspace.kkt_query) != 0:
             return REANALYZE, 0.0
-        ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+        counters_at(workspace.counters).factorizations += 1
     _find_error(workspace, method, h, shift)
     if workspace.m_act > 0:
         _remove_normal_part(workspace)

@@ -30,7 +30,7 @@ static int64_t go(tlismni_run *run, bool hold) {
 /* Count the events that compiled code has reported from row `first` on. */
 static void count_events(tlismni_run *run, int64_t first) {
     const double *rows = REALS(run, events);
-    int64_t count = WHOLES(run, counts)[EVENTS];
+    int64_t count = COUNTS(run)->events;
     for (int64_t k = first; k < count; k++) {
         run->noted.events += rows[EVENT_SIZE * k + 1] < (double)GAINS;
     }
@@ -38,7 +38,7 @@ static void count_events(tlismni_run *run, int64_t first) {
 
 /* Forget reported events, so that there is room for more. */
 static void drop_events(tlismni_run *run) {
-    WHOLES(run, counts)[EVENTS] = 0;
+    COUNTS(run)->events = 0;
 }
 
 bool advance_any_pending(const tlismni_run *run) {
@@ -56,23 +56,24 @@ bool tlismni_event_due(const tlismni_run *run) {
 }
 
 int64_t advance_used(const tlismni_run *run) {
-    return WHOLES(run, counters)[STEPS] + WHOLES(run, counts)[HANDLED];
+    return COUNTERS(run)->steps + COUNTS(run)->handled;
 }
 
 /* Other pivots where the policy asks for them: redundant rows that are left out stay so, those of the image, all along. */
 static tlismni_status repair(tlismni_run *run) {
-    int64_t *counts = WHOLES(run, counts), status = call(run, REPAIR, run->model->places.drive);
+    Counts *counts = COUNTS(run);
+    int64_t status = call(run, REPAIR, run->model->places.drive);
     if (status == WANTS_ROOM || status == WANT_MEMORY || status >= RAISED) {
         return (tlismni_status)(status < RAISED ? SETTLING + status : status);
     }
-    counts[STATUS] = status;
-    counts[ANSWER] = status == SETTLED ? REMEDY_DONE : NOT_DONE;
+    counts->status = status;
+    counts->answer = status == SETTLED ? REMEDY_DONE : NOT_DONE;
     return TLISMNI_OK;
 }
 
 /* What has to be done after `drive` has returned `code` (`recovery/policy.py`); DONE at the end of the way. */
 static tlismni_status after(tlismni_run *run, int64_t code, bool hold) {
-    int64_t *counts = WHOLES(run, counts);
+    Counts *counts = COUNTS(run);
     switch (code) {
     case REACHED:
     case ARRIVED:
@@ -83,10 +84,10 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold) {
     case GOES_BY_IMPULSES:
         return TLISMNI_OK;
     case SETTLE_IT:
-        if (hold || tlismni_computed(run) > REALS(run, goals)[GOAL]) {
+        if (hold || tlismni_computed(run) > GOALS(run)->goal) {
             return DONE;
         }
-        if (counts[EVENTS]) { /* there may be no room for more events */
+        if (counts->events) { /* there may be no room for more events */
             drop_events(run);
             return TLISMNI_OK;
         }
@@ -94,24 +95,24 @@ static tlismni_status after(tlismni_run *run, int64_t code, bool hold) {
     case WANTED:
     case EVENT_FAILED:
     case UNREPAIRED:
-        return (tlismni_status)(SETTLING + counts[STATUS]);
+        return (tlismni_status)(SETTLING + counts->status);
     case REPARTITION:
         return repair(run);
     case NEAR_SINGULAR:
     case LAST_RESORT:
     case FALL_BACK: /* only Python does these */
-        return (tlismni_status)counts[CAUSE];
+        return (tlismni_status)counts->cause;
     default:
         return (tlismni_status)code;
     }
 }
 
 tlismni_status advance_go_on(tlismni_run *run, int64_t code, bool hold, int64_t first, int64_t seen) {
-    int64_t *counts = WHOLES(run, counts);
+    Counts *counts = COUNTS(run);
     for (;;) {
         count_events(run, seen);
         tlismni_status status = after(run, code, hold);
-        seen = counts[EVENTS];
+        seen = counts->events;
         if (status != TLISMNI_OK) {
             return status == DONE ? TLISMNI_OK : status;
         }
@@ -119,7 +120,7 @@ tlismni_status advance_go_on(tlismni_run *run, int64_t code, bool hold, int64_t 
         if (left <= 0) {
             return TOO_MANY_STEPS;
         }
-        counts[BUDGET] = left < run->model->numbers.chunk ? left : run->model->numbers.chunk;
+        counts->budget = left < run->model->numbers.chunk ? left : run->model->numbers.chunk;
         code = go(run, hold);
     }
 }
@@ -157,7 +158,7 @@ tlismni_status advance_begin(tlismni_run *run, double t) {
             return status;
         }
     }
-    WHOLES(run, counts)[EVENTS] = 0;
+    COUNTS(run)->events = 0;
     times[NOW] = run->beside.now;
     times[ASKED_TIME] = t;
     bool told = !run->model->numbers.inputs || call(run, TELL, run->model->places.exchange) == 1;
@@ -230,7 +231,7 @@ tlismni_status tlismni_look(tlismni_run *run) {
 }
 
 tlismni_status advance_settle(tlismni_run *run) {
-    int64_t first = WHOLES(run, counts)[EVENTS];
+    int64_t first = COUNTS(run)->events;
     if (run->model->numbers.redundant) {
         return NEEDS_ROWS;
     }

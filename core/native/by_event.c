@@ -23,7 +23,8 @@ tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
     if (status != TLISMNI_OK) {
         return status;
     }
-    double start = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
+    double start = run->beside.now, stop = stop_of(run, t);
+    Goals *goals = GOALS(run);
     int64_t first = advance_used(run);
     for (;;) {
         while (status == TLISMNI_OK && tlismni_event_due(run)) {
@@ -32,9 +33,9 @@ tlismni_status tlismni_step_to_event(tlismni_run *run, double t, bool *event) {
         if (status != TLISMNI_OK) {
             return advance_end(run, status);
         }
-        goals[GOAL] = t;
-        goals[LAST_STOP] = stop;
-        status = advance_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        goals->goal = t;
+        goals->last_stop = stop;
+        status = advance_go_on(run, CHUNK, true, first, COUNTS(run)->events);
         if (status != TLISMNI_OK) {
             return advance_end(run, status);
         }
@@ -57,15 +58,16 @@ tlismni_status tlismni_next_point(tlismni_run *run, double t, double *point) {
     if (status != TLISMNI_OK) {
         return status;
     }
-    double now = run->beside.now, stop = stop_of(run, t), *goals = REALS(run, goals);
+    double now = run->beside.now, stop = stop_of(run, t);
+    Goals *goals = GOALS(run);
     int64_t first = advance_used(run);
     while (status == TLISMNI_OK && tlismni_event_due(run)) {
         status = advance_settle(run);
     }
     if (status == TLISMNI_OK && tlismni_computed(run) <= now) {
-        goals[GOAL] = now + 8.0 * (nextafter(fabs(now), INFINITY) - fabs(now)); /* no step ends before that */
-        goals[LAST_STOP] = stop;
-        status = advance_go_on(run, CHUNK, true, first, WHOLES(run, counts)[EVENTS]);
+        goals->goal = now + 8.0 * (nextafter(fabs(now), INFINITY) - fabs(now)); /* no step ends before that */
+        goals->last_stop = stop;
+        status = advance_go_on(run, CHUNK, true, first, COUNTS(run)->events);
     }
     *point = fmin(tlismni_computed(run), t);
     return advance_end(run, status);

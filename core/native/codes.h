@@ -1,14 +1,26 @@
-/* Codes that compiled code returns, and columns of its arrays (`control`: workspace_records.py, `begin_numbers`: begin_record.py; `rates`: exchange_record.py). `tests/core/test_native_image.py` holds them against the
- * Python sources. */
+/* Codes that compiled code returns, records of its arrays, and columns of others (`times`: exchange.py, `begin_numbers`:
+ * begin_record.py, `rates`: exchange_record.py). `tests/core/test_native_image.py` holds them against the Python sources. */
 #ifndef TLISMNI_CODES_H
 #define TLISMNI_CODES_H
 
-/* columns of `times` (exchange.py), `goals`, `counts`, `clock` (state/run_records.py), `counters` (state/workspace_records.py) */
-enum { NOW, ASKED_TIME, LAST_CHANGE, INTERVAL };
-enum { GOAL, LAST_STOP };
-enum { BUDGET, HANDLED, HERE, EVENTS, STATUS, CAUSE, REMEDY, ATTEMPTS, ANSWER };
-enum { UNANSWERED, NOT_DONE, REMEDY_DONE, OTHER_ROWS }; /* of ANSWER */
-enum { STEPS = 0, COUNTERS_SIZE = 15 };
+#include <stdint.h>
+
+/* GOALS and COUNTS (state/run_records.py), COUNTERS (state/workspace_records.py) */
+typedef struct {
+    double goal, last_stop, handled_at, passed;
+} Goals;
+
+typedef struct {
+    int64_t budget, handled, here, events, status, cause, remedy, attempts, answer;
+} Counts;
+
+typedef struct {
+    int64_t steps, rejected, outer, inner, factorizations, partitions, evaluations, stages, analyses, krylov, of_impulses,
+        impacts_in_rounds, unshared_loads, left_approaches, unfinished_sweeps;
+} Counters;
+
+enum { NOW, ASKED_TIME, LAST_CHANGE, INTERVAL };        /* columns of `times` */
+enum { UNANSWERED, NOT_DONE, REMEDY_DONE, OTHER_ROWS }; /* `answer` of Counts */
 enum { T0 = 0 };
 enum { FIRST_RATE, SECOND_RATE, RATES_SINCE, RATES_SIZE };
 enum { EVENT_SIZE = 9, GAINS = 7 };

@@ -98,6 +98,9 @@ struct tlismni_run {
 /* Places in a run's memory. */
 #define WHOLES(run, name) ((int64_t *)((run)->own + (run)->model->places.name))
 #define REALS(run, name) ((double *)((run)->own + (run)->model->places.name))
+#define GOALS(run) ((Goals *)REALS(run, goals))
+#define COUNTS(run) ((Counts *)WHOLES(run, counts))
+#define COUNTERS(run) ((Counters *)WHOLES(run, counters))
 
 /* A function of the library by its symbol, NULL if there is none. */
 Function image_function(const char *symbol);

@@ -85,8 +85,9 @@ def arrays_in_places(sim: Any, parameters: NDArray[Any]) -> tuple[NDArray[Any], 
     return (
         exchange.table, sim.drive.record.table, exchange.table["read"], exchange.table["chunk"],
         exchange.arrays["times"],
-        exchange.arrays["inputs"], exchange.arrays["channels"], sim.drive.goals, sim.drive.counts, sim.drive.events,
-        sim.drive.pending, sim.workspace.arrays["counters"], sim.method_arrays["times"], sim.method_arrays["ring"],
+        exchange.arrays["inputs"], exchange.arrays["channels"], sim.drive.goals.numbers, sim.drive.counts.numbers,
+        sim.drive.events, sim.drive.pending, sim.workspace.arrays["counters"], sim.method_arrays["times"],
+        sim.method_arrays["ring"],
         parameters, sim.beginning.record.table, sim.beginning.numbers, exchange.arrays["rates"],
         sim.workspace._record.table,
     )  # fmt: skip

@@ -116,5 +116,5 @@ def _make_room(sim: Any) -> None:
 
 def _as_at_first(sim: Any) -> None:
     """Counters and the guard against endless events begin anew, as in a run that has not been restored."""
-    sim.drive.counts[:] = 0
+    sim.drive.counts.numbers[:] = 0
     sim.guard.begin(sim.t)

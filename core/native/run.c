@@ -116,7 +116,7 @@ int64_t tlismni_event_count(const tlismni_run *run) {
 }
 
 int64_t tlismni_steps(const tlismni_run *run) {
-    return WHOLES(run, counters)[STEPS];
+    return COUNTERS(run)->steps;
 }
 
 void tlismni_limit_steps(tlismni_run *run, int64_t steps) {
@@ -126,7 +126,7 @@ void tlismni_limit_steps(tlismni_run *run, int64_t steps) {
 size_t tlismni_events(tlismni_run *run, tlismni_event *events, size_t room) {
     const double *row = REALS(run, events);
     size_t found = 0;
-    for (int64_t k = 0; k < WHOLES(run, counts)[EVENTS]; k++, row += EVENT_SIZE) {
+    for (int64_t k = 0; k < COUNTS(run)->events; k++, row += EVENT_SIZE) {
         if ((int)row[1] >= GAINS) {
             continue; /* what only warnings in Python tell of */
         }
@@ -136,6 +136,6 @@ size_t tlismni_events(tlismni_run *run, tlismni_event *events, size_t room) {
         }
         found++;
     }
-    WHOLES(run, counts)[EVENTS] = 0;
+    COUNTS(run)->events = 0;
     return found;
 }

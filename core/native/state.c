@@ -15,7 +15,7 @@
 
 typedef struct {
     int64_t size; /* bytes of the state, this head too */
-    int64_t counted[COUNTERS_SIZE];
+    Counters counted;
     Noted noted;
     Beside beside;
 } Saved;
@@ -65,7 +65,7 @@ void tlismni_save(const tlismni_run *run, void *bytes) {
     saved->size = matrices + 8 * words - (char *)bytes;
     saved->beside = run->beside;
     saved->noted = run->noted;
-    memcpy(saved->counted, WHOLES(run, counters), sizeof saved->counted);
+    saved->counted = *COUNTERS(run);
 }
 
 tlismni_status tlismni_restore(tlismni_run *run, const void *bytes) {
@@ -76,7 +76,7 @@ tlismni_status tlismni_restore(tlismni_run *run, const void *bytes) {
     void *raised = NULL;
     run->beside = saved->beside;
     run->noted = saved->noted;
-    memcpy(WHOLES(run, counters), saved->counted, sizeof saved->counted);
+    *COUNTERS(run) = saved->counted;
     memcpy(run->own + m->head.tables, numbers, numbers_size(m));
     int32_t code = ((Restore)m->functions[RESTORE_MATRICES])(&how, &raised, workspace_of(run), (int64_t)(intptr_t)matrices, anew);
     if (code != 0 || (how != KEPT && how != BUILT)) {

@@ -8,21 +8,15 @@ from ..assembly.condition_probe import set_probe
 from ..assembly.evaluate import evaluate_residuals, evaluate_tangent
 from ..assembly.redundant_reactions import analyze_equations
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, vec
 from ..events.records import DECLINED, SETTLED, SINGULAR_MATRIX, WANT_MEMORY, WANTS_ROOM, call_part, instant_at
 from ..linalg.record import WANT_ROOM
 from ..methods.frame_partition import PREFERENCE, prefer_attitudes
 from ..methods.history import recall
-from ..state.run_records import CLOCK_SIZE, PUSH_STEP, STEP_SIZE
+from ..state.run_records import clock_at
 from ..state.workspace_records import (
-    ANALYSES,
-    CHOICE_CONDITION,
-    CONDITION,
-    COUNTERS_SIZE,
-    FACTOR_CV,
     OK,
-    PARTITIONS,
-    RATE_SIZE,
+    convergence_at,
+    counters_at,
 )
 from ..time_loop.drive import loop_at, method_at, workspace_at
 
@@ -31,18 +25,18 @@ from ..time_loop.drive import loop_at, method_at, workspace_at
 def repair_now(drive: Any) -> int:
     """What `repair` does: a status of `events/records.py`. With one that wants memory it is repeated."""
     workspace = workspace_at(drive.workspace)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
-    partitions, analyses = counters[PARTITIONS], counters[ANALYSES]
+    counters = counters_at(workspace.counters)
+    partitions, analyses = counters.partitions, counters.analyses
     status = _repair(drive, workspace, method_at(drive.method), instant_at(drive.instant))
     if status == WANTS_ROOM or status == WANT_MEMORY:
-        counters[PARTITIONS], counters[ANALYSES] = partitions, analyses
+        counters.partitions, counters.analyses = partitions, analyses
     return status
 
 
 @internal
 def _repair(drive: Any, workspace: Any, method: Any, instant: Any) -> int:
-    rate = vec(workspace.rate, RATE_SIZE)
-    c_v, condition = rate[FACTOR_CV], rate[CONDITION]
+    rate = convergence_at(workspace.rate)
+    c_v, condition = rate.factor_cv, rate.condition
     recall(workspace, method, 0)
     evaluate_residuals(workspace)
     prefer_attitudes(workspace, method, PREFERENCE)
@@ -51,7 +45,7 @@ def _repair(drive: Any, workspace: Any, method: Any, instant: Any) -> int:
         set_probe(workspace)
     if status != SETTLED:
         return status
-    rate[CHOICE_CONDITION] = condition
+    rate.choice_condition = condition
     # pivots of the stages' matrix, which may be others than those of the mass matrix alone
     evaluate_tangent(workspace, c_v * c_v, c_v)
     code = analyze_equations(workspace, workspace.kkt)
@@ -75,6 +69,6 @@ def go_by_impulses(drive: Any) -> int:
     status = int(call_part(instant.step_through, instant, drive, workspace, method))
     if status == SETTLED:
         # what failed has left it at nearly nothing
-        clock = vec(loop_at(drive.loop).clock, CLOCK_SIZE)
-        clock[STEP_SIZE] = clock[PUSH_STEP]
+        clock = clock_at(loop_at(drive.loop).clock)
+        clock.step_size = clock.push_step
     return status

@@ -12,7 +12,7 @@ import numpy as np
 from ..assembly.evaluate import evaluate_power, evaluate_residuals
 from ..assembly.singular_values import least_singular_value
 from ..event_detection.dense_output import interpolate
-from ..state.workspace_records import LEAST_CONDITION, OK, WORST_CONDITION
+from ..state.workspace_records import OK, convergence_of
 
 if TYPE_CHECKING:
     from ..simulation.engine import Engine
@@ -26,12 +26,16 @@ NODES = 4
 
 def strained(sim: "Engine") -> bool:
     """True if the newest step came near a singular position and `t` lies within it."""
-    rate, ring, times = sim.workspace.arrays["rate"], sim.method_arrays["ring"], sim.method_arrays["times"]
+    rate, ring, times = (
+        convergence_of(sim.workspace.arrays["rate"]),
+        sim.method_arrays["ring"],
+        sim.method_arrays["times"],
+    )
     newest, bridge = int(ring[0]), int(ring[2])
     if bridge > 0:
         return bool(times[(newest - bridge + 1) % len(times)] < sim.t < times[newest])
     return bool(
-        rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
+        rate.worst_condition > STRAINED_GROWTH * rate.least_condition > 0.0
         and ring[1] > 1
         and times[newest - 1] < sim.t < times[newest]
     )

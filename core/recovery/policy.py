@@ -11,36 +11,22 @@ from typing import Any
 import numpy as np
 
 from ..compiled.jit import compiled, internal
-from ..compiled.views import ivec, vec
 from ..events.records import SETTLED, WANT_MEMORY
 from ..methods.history import history_time
 from ..rounding import SHORTEST
 from ..state.run_records import (
-    ANSWER,
-    ATTEMPTS,
-    CAUSE,
-    CLOCK_SIZE,
-    COUNTS_SIZE,
     DIVIDES,
     DONE,
-    EAGER,
     FALL_BACK,
-    FIXED_STEP,
     GOES_BY_IMPULSES,
-    HALVINGS,
     JAM,
     LAST_RESORT,
     NEAR_SINGULAR,
     NOT_DONE,
     OTHER_ROWS,
     REACHED,
-    REMEDY,
-    REPAIRED_AT,
     REPARTITION,
-    STATUS,
-    STEP_SIZE,
     STEP_TOO_SMALL,
-    TRIAL_STEP,
     UNANSWERED,
     UNLOCATED,
     UNREPAIRED,
@@ -48,21 +34,19 @@ from ..state.run_records import (
     WANTED,
     call_locate,
     call_settle,
+    clock_at,
+    counts_at,
 )
 from ..state.workspace_records import (
-    CONTROL_SIZE,
     INNER_DIVERGED,
-    LEAST_CONDITION,
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
-    OUTER_LOOP,
     OUTER_SLOW,
-    RATE_SCALE,
-    RATE_SIZE,
     REANALYZE,
     SINGULAR,
-    WORST_CONDITION,
+    control_at,
+    convergence_at,
 )
 from ..time_loop.drive import loop_at, method_at, workspace_at
 from .near_singular import STRAINED_GROWTH
@@ -80,34 +64,34 @@ def recover(drive: Any, code: int) -> int:
     """What follows once `drive` has ended with `code`: OK, it goes on; else what whoever drives the run has to do, or
     may say, or why it ends. `code` does not count while an answer is awaited."""
     workspace, method = workspace_at(drive.workspace), method_at(drive.method)
-    counts, clock = ivec(drive.counts, COUNTS_SIZE), vec(loop_at(drive.loop).clock, CLOCK_SIZE)
-    remedy, answer = counts[REMEDY], counts[ANSWER]
-    counts[REMEDY], counts[ANSWER] = 0, UNANSWERED
+    counts, clock = counts_at(drive.counts), clock_at(loop_at(drive.loop).clock)
+    remedy, answer = counts.remedy, counts.answer
+    counts.remedy, counts.answer = 0, UNANSWERED
     if remedy == 0:
         now = history_time(method, 0)
         if code == REACHED:
             return OK if grow_parts(clock, now) else code
-        counts[CAUSE], counts[ATTEMPTS] = code, 0
+        counts.cause, counts.attempts = code, 0
         if _may_fall_back(workspace, clock, code):
             return FALL_BACK
         remedy = _first_remedy(clock, code, now)
         if remedy == 0:
             return code
-    cause = counts[CAUSE]
+    cause = counts.cause
     if remedy == BY_PARTITION:
         found = _renew_partition(drive, workspace, counts, answer)
         if found == REPARTITION or found == WANTED:
-            counts[REMEDY] = BY_PARTITION
+            counts.remedy = BY_PARTITION
         if found == REPARTITION or found == WANTED or found == OK:
             return found
         # without it the motion does not go on, but where steps fail there is more to try
         more = BY_PASSAGE if found == VIOLATED or cause <= OUTER_SLOW else 0
         remedy, answer = BY_SMALLER_STEP if found == UNLOCATED else more, UNANSWERED
     if remedy == BY_SMALLER_STEP:
-        whole = clock[HALVINGS] == 0.0
-        if _may_shrink(cause) and clock[FIXED_STEP] == 0.0 and _shrink(workspace, method, clock):
+        whole = clock.halvings == 0.0
+        if _may_shrink(cause) and clock.fixed_step == 0.0 and _shrink(workspace, method, clock):
             if cause == REANALYZE:  # the matrix of the shorter step has other pivots
-                clock[REPAIRED_AT] = -np.inf
+                clock.repaired_at = -np.inf
             return OK
         if halve_step(drive, workspace, method, clock):
             return DIVIDES if whole else OK
@@ -115,7 +99,7 @@ def recover(drive: Any, code: int) -> int:
     if remedy == BY_PASSAGE:
         on_the_way = cause == NEAR_SINGULAR or cause == VIOLATED
         if answer == UNANSWERED and (on_the_way or _strained(workspace, clock)):
-            counts[REMEDY] = BY_PASSAGE
+            counts.remedy = BY_PASSAGE
             return NEAR_SINGULAR if on_the_way else LAST_RESORT
         if answer == DONE or cause == NEAR_SINGULAR:
             # where there is none near, it will be looked for again later
@@ -124,14 +108,14 @@ def recover(drive: Any, code: int) -> int:
     if remedy == BY_IMPULSES and drive.go_by_impulses != 0 and call_settle(drive.go_by_impulses, drive) == SETTLED:
         return GOES_BY_IMPULSES
     # whoever tries again all the same begins anew
-    clock[REPAIRED_AT] = -np.inf
-    return UNREPAIRED if counts[ATTEMPTS] < 0 else cause
+    clock.repaired_at = -np.inf
+    return UNREPAIRED if counts.attempts < 0 else cause
 
 
 @internal
 def _may_fall_back(workspace: Any, clock: Any, code: int) -> bool:
     failed = code == OUTER_DIVERGED or code == OUTER_SLOW
-    return failed and clock[EAGER] > 0.0 and vec(workspace.control, CONTROL_SIZE)[OUTER_LOOP] != 0.0
+    return failed and clock.eager > 0.0 and control_at(workspace.control).outer_loop != 0.0
 
 
 @internal
@@ -147,9 +131,9 @@ def _first_remedy(clock: Any, code: int, now: float) -> int:
         return BY_SMALLER_STEP
     if code > OUTER_SLOW:
         return 0
-    if clock[REPAIRED_AT] == now:
+    if clock.repaired_at == now:
         return BY_SMALLER_STEP
-    clock[REPAIRED_AT] = now
+    clock.repaired_at = now
     return BY_PARTITION
 
 
@@ -157,24 +141,24 @@ def _first_remedy(clock: Any, code: int, now: float) -> int:
 def _renew_partition(drive: Any, workspace: Any, counts: Any, answer: int) -> int:
     """A new partition at the newest row; and of an event that could not be located, another search with it: OK,
     REPARTITION or WANTED (what is asked for), UNREPAIRED, UNLOCATED, or VIOLATED (the same redundant rows)."""
-    cause = counts[CAUSE]
+    cause = counts.cause
     while True:
         if answer == UNANSWERED:
             if workspace.n_redundant > 0:
                 return REPARTITION
-            counts[STATUS] = call_settle(drive.repair, drive)
-            if counts[STATUS] != SETTLED and counts[STATUS] <= WANT_MEMORY:
+            counts.status = call_settle(drive.repair, drive)
+            if counts.status != SETTLED and counts.status <= WANT_MEMORY:
                 return WANTED
-            answer = DONE if counts[STATUS] == SETTLED else NOT_DONE
+            answer = DONE if counts.status == SETTLED else NOT_DONE
         if answer == NOT_DONE:
-            counts[ATTEMPTS] = -1
+            counts.attempts = -1
             return UNREPAIRED
         if cause == VIOLATED and answer != OTHER_ROWS:
             return VIOLATED
         if cause != UNLOCATED or call_locate(drive.locate, drive, True) == OK:
             return OK
-        counts[ATTEMPTS] += 1
-        if counts[ATTEMPTS] == MOST_LOCATIONS:
+        counts.attempts += 1
+        if counts.attempts == MOST_LOCATIONS:
             return UNLOCATED
         answer = UNANSWERED
 
@@ -187,13 +171,13 @@ def _may_shrink(cause: int) -> bool:
 @internal
 def _shrink(workspace: Any, method: Any, clock: Any) -> bool:
     """A smaller step after a failure of a repaired system; False if it cannot be smaller."""
-    h, scale = 0.25 * clock[TRIAL_STEP], 1.0 / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE]
-    clock[STEP_SIZE] = h
+    h, scale = 0.25 * clock.trial_step, 1.0 / control_at(workspace.control).rate_scale
+    clock.step_size = h
     return bool(h > SHORTEST * max(abs(history_time(method, 0)), 1e-6 * scale))
 
 
 @internal
 def _strained(workspace: Any, clock: Any) -> bool:
     """True if the constraints are nearly dependent, and steps under error control have failed on the way there."""
-    rate = vec(workspace.rate, RATE_SIZE)
-    return clock[FIXED_STEP] == 0.0 and rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
+    rate = convergence_at(workspace.rate)
+    return clock.fixed_step == 0.0 and rate.worst_condition > STRAINED_GROWTH * rate.least_condition > 0.0

@@ -10,7 +10,7 @@ from ..errors import ConsistencyError, SimulationError
 from ..linalg import SingularMatrixError
 from ..methods.frame_partition import PREFERENCE, prefer_attitudes
 from ..methods.history import recall
-from ..state.workspace_records import CHOICE_CONDITION, CONDITION, FACTOR_CV
+from ..state.workspace_records import convergence_of
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
@@ -24,17 +24,17 @@ def repair(sim: "Simulation") -> bool:
     ------
     SimulationError : if the constraints depend on one another there.
     """
-    c_v = float(sim.workspace.arrays["rate"][FACTOR_CV])
+    c_v = convergence_of(sim.workspace.arrays["rate"]).factor_cv
     recall(sim.workspace.record, sim._method.record, 0)
-    rate = sim.workspace.arrays["rate"]
-    condition = float(rate[CONDITION])
+    rate = convergence_of(sim.workspace.arrays["rate"])
+    condition = float(rate.condition)
     try:
         changed = choose_rows(sim.workspace)
         _prepare_for_frames(sim)
         if changed:
             _move_multipliers(sim)
         else:
-            rate[CHOICE_CONDITION] = condition
+            rate.choice_condition = condition
             # always, as `repair_now` does: whether memory was asked for on the way decides nothing
             _order_as_in_stages(sim, c_v)
     except (ConsistencyError, SingularMatrixError) as error:

@@ -22,8 +22,8 @@ from ..errors import SimulationError
 from ..event_detection.crossings import find_events
 from ..methods.history import recall
 from ..rounding import CONSTRAINT_NOISE, SAME_INSTANT
-from ..state.run_records import EQUAL_STEPS, EVENT, PREVIOUS_NORM, STEP_SIZE, STOP_TIME, TRIAL_STEP
-from ..state.workspace_records import FACTOR_AGE, LEAST_CONDITION, LOOKED_CONDITION, MOST_CONDITION, OK, REANALYZE
+from ..state.run_records import EVENT
+from ..state.workspace_records import OK, REANALYZE, control_of, convergence_of
 from ..time_loop.time_loop import accept, set_weights_at, violates_redundant
 from .collocation import Collocation, Points, gauss
 from .singular_position import find_singular, natural_step
@@ -60,7 +60,7 @@ def pass_singular(sim: "Simulation", last_resort: bool = False) -> "tuple[int, L
     SimulationError : if the motion branches there.
     """
     natural = natural_step(sim)
-    remaining = float(sim.clock[STOP_TIME]) - sim.t_internal
+    remaining = float(sim.clock.stop_time) - sim.t_internal
     found = find_singular(sim, natural)
     if found is None:
         return REANALYZE, None
@@ -130,7 +130,7 @@ class LongStep:
 
     def place(self, points: Points, k: int) -> None:
         """Point k becomes the current one."""
-        arrays, n, stop = self.sim.workspace.arrays, len(self.weights[0]), float(self.sim.clock[STOP_TIME])
+        arrays, n, stop = self.sim.workspace.arrays, len(self.weights[0]), float(self.sim.clock.stop_time)
         w = len(arrays["v"]) - points.work.shape[1]
         arrays["t"][0] = points.times[k]
         if k == len(points.times) - 1 and abs(points.times[k] - stop) <= SAME_INSTANT * np.ptp(points.times):
@@ -256,9 +256,9 @@ def _refuse_branching(sim: "Simulation", result: _Result, singular: float) -> No
 def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -> tuple[int, LongStep | None]:
     """The points become rows of the history, up to the first event of a contact; OK, or EVENT if that comes at once."""
     workspace, method, loop = sim.workspace.record, sim._method.record, sim._loop.record
-    ring, rate = sim.method_arrays["ring"], sim.workspace.arrays["rate"]
-    sim.clock[[STEP_SIZE, EQUAL_STEPS, PREVIOUS_NORM]] = natural, 0.0, 0.0
-    rate[FACTOR_AGE] = -1.0
+    ring, rate = sim.method_arrays["ring"], convergence_of(sim.workspace.arrays["rate"])
+    sim.clock.step_size, sim.clock.equal_steps, sim.clock.previous_norm = natural, 0.0, 0.0
+    rate.factor_age = -1.0
     count, last = 1, len(points.times)
     for k in range(1, last):
         over.place(points, k)
@@ -266,7 +266,7 @@ def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -
         violated = violates_redundant(workspace, 1.0)
         if violated or find_events(workspace, method, loop, gap, False):
             if count == 1:
-                sim.clock[TRIAL_STEP] = gap
+                sim.clock.trial_step = gap
                 return (REANALYZE, None) if violated else (EVENT, over)
             break
         accept(workspace, method, loop)
@@ -274,6 +274,6 @@ def _accept(sim: "Simulation", over: LongStep, points: Points, natural: float) -
     sim.flush()
     ring[1], ring[2] = count, count
     # after all of it the position lies as far behind as it lay ahead: ordinary steps lead away from here
-    whole = 2.0 * sim.workspace.arrays["control"][MOST_CONDITION] * rate[LEAST_CONDITION]
-    rate[LOOKED_CONDITION] = whole if count == last else 0.0
+    whole = 2.0 * control_of(sim.workspace.arrays["control"]).most_condition * rate.least_condition
+    rate.looked_condition = whole if count == last else 0.0
     return OK, None

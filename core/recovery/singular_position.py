@@ -6,7 +6,6 @@ import numpy as np
 
 from ..assembly.singular_values import least_singular_value
 from ..methods.history import recall
-from ..state.run_records import TRIAL_STEP
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
@@ -38,7 +37,7 @@ def natural_step(sim: "Simulation") -> float:
     rows = [int(ring[0] - back) % len(times) for back in range(min(int(ring[1]), RECENT))]
     gaps = -np.diff(times[rows])
     # a fixed step may have been divided
-    step = max(float(sim.clock[TRIAL_STEP]), sim.settings.step or 0.0)
+    step = max(float(sim.clock.trial_step), sim.settings.step or 0.0)
     return max(step, float(np.median(gaps)) if len(gaps) else 0.0)
 
 

@@ -7,16 +7,7 @@ from ..compiled.views import vec
 from ..events.progress import GUARD_SIZE, RUN_BEGAN
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
-from ..state.run_records import (
-    DIVIDED_STEPS,
-    DIVIDED_UNTIL,
-    FAILURES,
-    FIXED_STEP,
-    HALVINGS,
-    PARTS_UNTIL,
-    TRIAL_STEP,
-)
-from ..state.workspace_records import CONTROL_SIZE, FACTOR_AGE, OUTER_LOOP, RATE_SIZE
+from ..state.workspace_records import control_at, convergence_at
 
 MOST_HALVINGS = 20
 """Of a fixed step: what does not converge with a millionth of it does so for other reasons than its size. Friction in a
@@ -34,22 +25,22 @@ AT_ONCE = 4.0
 def halve_step(drive: Any, workspace: Any, method: Any, clock: Any) -> bool:
     """Go on from the newest row with half the fixed step that has failed; False where steps are not divided: with error
     control, by the simple iteration, whose limit is what a user wants to know, or beyond the bounds above."""
-    if clock[FIXED_STEP] == 0.0 or vec(workspace.control, CONTROL_SIZE)[OUTER_LOOP] == 1.0:
+    if clock.fixed_step == 0.0 or control_at(workspace.control).outer_loop == 1.0:
         return False
     now = history_time(method, 0)
-    if clock[HALVINGS] > 0.0:
-        if clock[HALVINGS] == MOST_HALVINGS or clock[FAILURES] == MOST_FAILURES:
+    if clock.halvings > 0.0:
+        if clock.halvings == MOST_HALVINGS or clock.failures == MOST_FAILURES:
             return False
     else:
         began = vec(drive.guard, GUARD_SIZE)[RUN_BEGAN]
-        if clock[DIVIDED_STEPS] >= ALLOWANCE + DIVIDED_SHARE * ((now - began) / clock[FIXED_STEP]):
+        if clock.divided_steps >= ALLOWANCE + DIVIDED_SHARE * ((now - began) / clock.fixed_step):
             return False
-        clock[DIVIDED_UNTIL] = now + clock[TRIAL_STEP]
-        clock[DIVIDED_STEPS] += 1.0
-    clock[FAILURES] += 1.0
+        clock.divided_until = now + clock.trial_step
+        clock.divided_steps += 1.0
+    clock.failures += 1.0
     recall(workspace, method, 0)
-    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
-    _set_parts(clock, clock[HALVINGS] + 1.0, now)
+    convergence_at(workspace.rate).factor_age = -1.0
+    _set_parts(clock, clock.halvings + 1.0, now)
     return True
 
 
@@ -57,26 +48,26 @@ def halve_step(drive: Any, workspace: Any, method: Any, clock: Any) -> bool:
 def grow_parts(clock: Any, now: float) -> bool:
     """Go on with larger steps where smaller ones have ended, with whole ones behind the divided one; False if none is
     divided, or its parts go on from `now` (s), the time of the newest row."""
-    if clock[HALVINGS] == 0.0:
+    if clock.halvings == 0.0:
         return False
-    if clock[DIVIDED_UNTIL] - now <= NO_STEP * abs(now):  # no step fits between
+    if clock.divided_until - now <= NO_STEP * abs(now):  # no step fits between
         end_division(clock)
-    elif clock[PARTS_UNTIL] - now > NO_STEP * abs(now):
+    elif clock.parts_until - now > NO_STEP * abs(now):
         return False
     else:
-        _set_parts(clock, max(clock[HALVINGS] - 1.0, 1.0), now)
+        _set_parts(clock, max(clock.halvings - 1.0, 1.0), now)
     return True
 
 
 @internal
 def end_division(clock: Any) -> None:
     """Go on with whole steps."""
-    clock[FIXED_STEP] *= 2.0 ** clock[HALVINGS]
-    clock[HALVINGS] = clock[FAILURES] = clock[DIVIDED_UNTIL] = clock[PARTS_UNTIL] = 0.0
+    clock.fixed_step *= 2.0**clock.halvings
+    clock.halvings = clock.failures = clock.divided_until = clock.parts_until = 0.0
 
 
 @internal
 def _set_parts(clock: Any, halvings: float, now: float) -> None:
-    clock[FIXED_STEP] *= 2.0 ** (clock[HALVINGS] - halvings)
-    clock[HALVINGS] = halvings
-    clock[PARTS_UNTIL] = min(clock[DIVIDED_UNTIL], now + AT_ONCE * clock[FIXED_STEP])
+    clock.fixed_step *= 2.0 ** (clock.halvings - halvings)
+    clock.halvings = halvings
+    clock.parts_until = min(clock.divided_until, now + AT_ONCE * clock.fixed_step)

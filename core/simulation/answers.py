@@ -12,13 +12,10 @@ from ..methods.history import recall
 from ..recovery.repartition import repair
 from ..recovery.step_division import ALLOWANCE, DIVIDED_SHARE
 from ..state.run_records import (
-    CAUSE,
     DIVIDES,
     DONE,
     FALL_BACK,
-    FIXED_STEP,
     GOES_BY_IMPULSES,
-    HALVINGS,
     JAM,
     LAST_RESORT,
     NEAR_SINGULAR,
@@ -26,22 +23,19 @@ from ..state.run_records import (
     OTHER_ROWS,
     REPARTITION,
     STEP_TOO_SMALL,
-    TRIAL_STEP,
     UNLOCATED,
     UNREPAIRED,
     VIOLATED,
 )
 from ..state.workspace_records import (
-    FAILED_NORM,
     INNER_DIVERGED,
-    LOOKED_CONDITION,
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
     OUTER_SLOW,
     REANALYZE,
     SINGULAR,
-    WORST_CONDITION,
+    convergence_of,
 )
 from ..time_loop.time_loop import trial_step
 from .locating import locate_in_long_step
@@ -89,7 +83,7 @@ def answer(sim: "Simulation", code: int) -> None:
         logger.warning(
             "at t = %.9g s steps of impulses take over among many contacts: %s",
             sim.t_internal,
-            _REASONS[int(drive.counts[CAUSE])][1],
+            _REASONS[int(drive.counts.cause)][1],
         )
     elif code == UNREPAIRED:
         repair(sim)  # raises, and says which rows
@@ -115,8 +109,8 @@ def _say_division(sim: "Simulation") -> None:
 
 def _fall_back(sim: "Simulation") -> None:
     """Let Newton's outer loop take over from one that has failed, and say so."""
-    t, h, outer = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.outer
-    reason = f"{_REASONS[int(sim.drive.counts[CAUSE])][1]} with a step of {h:.3g} s{_limit(sim, h)}"
+    t, h, outer = sim.t_internal, float(sim.clock.trial_step), sim.outer
+    reason = f"{_REASONS[int(sim.drive.counts.cause)][1]} with a step of {h:.3g} s{_limit(sim, h)}"
     logger.warning("at t = %.9g s outer loop '%s' gave way to 'newton': %s", t, outer, reason)
     sim.fallbacks.append(Fallback(t, outer, reason))
     sim.use_outer_loop("newton")
@@ -125,7 +119,7 @@ def _fall_back(sim: "Simulation") -> None:
 
 def _limit(sim: "Simulation", h: float) -> str:
     """The largest step of the simple iteration, as its measured contraction tells."""
-    rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+    rate = float(convergence_of(sim.workspace.arrays["rate"]).failed_norm)
     if sim.outer != "simple" or not (math.isfinite(rate) and rate > 0.0):
         return ""
     return f" (contraction {rate:.3g}; it goes with h^2, so the limit is about {h / math.sqrt(rate):.3g} s)"
@@ -133,7 +127,7 @@ def _limit(sim: "Simulation", h: float) -> str:
 
 def _violated(sim: "Simulation") -> NoReturn:
     """A row that was taken for redundant does not hold any more at the end of the step that was tried."""
-    trial_step(sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock[TRIAL_STEP]))
+    trial_step(sim.workspace.record, sim._method.record, sim._loop.record, float(sim.clock.trial_step))
     arrays, assembly = sim.workspace.arrays, sim.assembly
     rows = sim.workspace.structure.redundant
     worst = int(rows[np.argmax(np.abs(arrays["phi"][rows]))])
@@ -152,8 +146,8 @@ def _pass_singular(sim: "Simulation", last_resort: bool) -> bool:
     `last_resort`: steps towards it have failed."""
     from ..recovery.singular_passage import pass_singular  # rare, and no small thing to import
 
-    rate, tried = sim.workspace.arrays["rate"], float(sim.clock[TRIAL_STEP])
-    worst = float(rate[WORST_CONDITION])
+    rate, tried = convergence_of(sim.workspace.arrays["rate"]), float(sim.clock.trial_step)
+    worst = float(rate.worst_condition)
     if sim.workspace.dropped:
         repair(sim)
     code, over = pass_singular(sim, last_resort)
@@ -161,8 +155,8 @@ def _pass_singular(sim: "Simulation", last_resort: bool) -> bool:
         locate_in_long_step(sim, over)
     elif code != OK:
         # nothing near: go on, and look again when it has become twice as bad
-        rate[LOOKED_CONDITION] = 2.0 * max(worst, float(rate[WORST_CONDITION]))
-        sim.clock[TRIAL_STEP] = tried
+        rate.looked_condition = 2.0 * max(worst, float(rate.worst_condition))
+        sim.clock.trial_step = tried
         return False
     return True
 
@@ -171,10 +165,10 @@ def _fail(sim: "Simulation", code: int) -> NoReturn:
     from ..recovery.singular_position import near_singular
 
     loop, reason = _REASONS.get(code, ("outer", f"status {code}"))
-    t, h, settings = sim.t_internal, float(sim.clock[TRIAL_STEP]), sim.settings
+    t, h, settings = sim.t_internal, float(sim.clock.trial_step), sim.settings
     tried = _tried(sim, settings.step) if settings.step else f"steps down to {h:.3g} s, new partition and factorisation"
     if sim.outer == "simple" and loop == "outer":
-        rate = float(sim.workspace.arrays["rate"][FAILED_NORM])
+        rate = float(convergence_of(sim.workspace.arrays["rate"]).failed_norm)
         remedy = (
             f"The simple iteration contracts only if c_q omega^2 < 1 (its factor was {rate:.3g}; c_q = beta h^2 or "
             f"(h b)^2), omega the highest frequency: the largest step here is about {h / math.sqrt(rate):.3g} s. Use "
@@ -204,8 +198,8 @@ def _fail(sim: "Simulation", code: int) -> NoReturn:
 def _tried(sim: "Simulation", whole: float) -> str:
     """What has been tried, of a run with fixed steps of size `whole` (s)."""
     step, divided = f"fixed step {whole:.3g} s", sim.divided_steps
-    if sim.clock[HALVINGS] > 0.0:
-        return f"{step}, divided into parts down to {float(sim.clock[FIXED_STEP]):.3g} s"
+    if sim.clock.halvings > 0.0:
+        return f"{step}, divided into parts down to {float(sim.clock.fixed_step):.3g} s"
     if divided == 0:
         return step
     return (

@@ -20,8 +20,8 @@ from ..methods.history import restart
 from ..rounding import RATE_ROUNDING, START_OVERLAP, START_RANK
 from ..stage.accelerations import solve_accelerations
 from ..state.impact_law_codes import BY_FORCE
-from ..state.run_records import CLOCK_SIZE, MAX_STEP, STEP_SIZE
-from ..state.workspace_records import CONTROL_SIZE, OK, RATE_SCALE
+from ..state.run_records import clock_at
+from ..state.workspace_records import OK, control_at
 from .begin_measure import place
 from .begin_record import (
     BEGIN_SIZE,
@@ -59,8 +59,8 @@ def start(begin: Any, drive: Any, instant: Any, workspace: Any, method: Any, loo
         return int(status)
     if not _accelerate(workspace):
         return START_UNSOLVED
-    clock, first = vec(loop.clock, CLOCK_SIZE), vec(begin.numbers, BEGIN_SIZE)[GIVEN_FIRST_STEP]
-    clock[STEP_SIZE] = first if first > 0.0 else _first_step(workspace, clock[MAX_STEP])
+    clock, first = clock_at(loop.clock), vec(begin.numbers, BEGIN_SIZE)[GIVEN_FIRST_STEP]
+    clock.step_size = first if first > 0.0 else _first_step(workspace, clock.max_step)
     new_history(workspace, method, loop)
     return _begin_forces(drive, instant, workspace, method, loop)
 
@@ -184,7 +184,7 @@ def _first_step(workspace: Any, longest: float) -> float:
     speed, acceleration = 0.0, 0.0
     for i in range(workspace.n):
         speed, acceleration = max(speed, abs(v[i]) / scale[i]), max(acceleration, abs(a[i]) / scale[i])
-    guess = 0.1 * (1.0 / vec(workspace.control, CONTROL_SIZE)[RATE_SCALE])
+    guess = 0.1 * (1.0 / control_at(workspace.control).rate_scale)
     if speed > 0.0:
         guess = min(guess, 0.01 / speed)
     if acceleration > 0.0:

@@ -19,19 +19,7 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, vec
 from ..events.records import SETTLED, WANT_MEMORY
 from ..rounding import CONSTRAINT_TOLERANCES
-from ..state.workspace_records import (
-    ATOL,
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    ENERGY_SCALE,
-    EXACTNESS,
-    OK,
-    RATE_SCALE,
-    STIFFNESS_SCALE,
-    building_at,
-    call_engage,
-    structure_at,
-)
+from ..state.workspace_records import COUNTERS_SIZE, OK, building_at, call_engage, control_at, structure_at
 from .begin_record import (
     ANGLE_TOLERANCE,
     ANGULAR_SPEED_TOLERANCE,
@@ -123,8 +111,8 @@ def _measure_scales(begin: Any, drive: Any, workspace: Any) -> float:
     rate = np.sqrt(square) if square != 0.0 else 1.0
     heaviest = found[MEASURED_HEAVIEST] if found[MEASURED_HEAVIEST] != 0.0 else 1.0
     energy = found[FOUND_WORK] if found[FOUND_WORK] != 0.0 else heaviest * (rate * rate)
-    control = vec(workspace.control, CONTROL_SIZE)
-    control[RATE_SCALE], control[ENERGY_SCALE], control[STIFFNESS_SCALE] = rate, energy, found[MEASURED_STIFFEST]
+    control = control_at(workspace.control)
+    control.rate_scale, control.energy_scale, control.stiffness_scale = rate, energy, found[MEASURED_STIFFEST]
     work, given = vec(workspace.work_scale, workspace.n_ext), vec(begin.work_sizes, workspace.n_ext)
     for i in range(workspace.n_ext):
         work[i] = SMALL_WORK * energy
@@ -196,12 +184,12 @@ def _set_tolerances(begin: Any, workspace: Any) -> None:
     """Absolute tolerances, in parts of the scales or as they are given, and how exactly constraints are to be met."""
     numbers, control, scale = (
         vec(begin.numbers, BEGIN_SIZE),
-        vec(workspace.control, CONTROL_SIZE),
+        control_at(workspace.control),
         vec(workspace.scale, workspace.n),
     )
     internal, angle = ivec(begin.internal, workspace.n), ivec(begin.angle, workspace.n)
     atol_q, atol_v = vec(workspace.atol_q, workspace.n), vec(workspace.atol_v, workspace.n)
-    rate, length, given = control[RATE_SCALE], numbers[GIVEN_LENGTH], numbers[GIVEN_TOLERANCE]
+    rate, length, given = control.rate_scale, numbers[GIVEN_LENGTH], numbers[GIVEN_TOLERANCE]
     fixed, finest = numbers[GIVEN_STEP] > 0.0, 1.0
     for i in range(workspace.n):
         # the state is the velocity of an internal coordinate, and a length; a tolerance as large as what it is for
@@ -223,6 +211,6 @@ def _set_tolerances(begin: Any, workspace: Any) -> None:
     if fixed:
         finest = given if given > 0.0 else 1.0
     else:
-        control[ATOL] = finest
+        control.atol = finest
     # differences over several steps see what the constraints leave open: it has to be small against the tolerances
-    control[EXACTNESS] = min(1.0, max(LEAST_EXACTNESS, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))
+    control.exactness = min(1.0, max(LEAST_EXACTNESS, CONSTRAINT_SHARE * finest / CONSTRAINT_TOLERANCES[0]))

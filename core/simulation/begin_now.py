@@ -16,14 +16,11 @@ from ..events.progress import GUARD_SIZE
 from ..events.records import SETTLED, instant_at
 from ..model.signals import INPUT_SIZE, evaluate_signal
 from ..state.run_records import (
-    CLOCK_SIZE,
-    COUNTS_SIZE,
-    EVENTS,
-    GOALS_SIZE,
-    HANDLED_AT,
-    MAX_STEP,
     call_sample,
     call_settle,
+    clock_at,
+    counts_at,
+    goals_at,
 )
 from ..state.workspace_records import OK
 from ..time_loop.drive import drive_at, is_due, loop_at, method_at, workspace_at
@@ -64,7 +61,7 @@ def begin_now(begin: Any) -> int:
     exchange, drive = exchange_at(begin.exchange), drive_at(begin.drive)
     workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
     t0 = vec(begin.numbers, BEGIN_SIZE)[T0]
-    _clear(begin, exchange, drive, workspace, vec(loop.clock, CLOCK_SIZE))
+    _clear(begin, exchange, drive, workspace, clock_at(loop.clock))
     _turn(begin, workspace, exchange.n_inputs, t0)
     status = measure(begin, drive, workspace)
     if status == SETTLED:
@@ -88,7 +85,7 @@ def begin_now(begin: Any) -> int:
 @internal
 def _clear(begin: Any, exchange: Any, drive: Any, workspace: Any, clock: Any) -> None:
     """As before a run begins, but for the longest step and the inputs, which are numbers of the model."""
-    longest, t0 = clock[MAX_STEP], vec(begin.numbers, BEGIN_SIZE)[T0]
+    longest, t0 = clock.max_step, vec(begin.numbers, BEGIN_SIZE)[T0]
     inputs, kept = (
         mat(workspace.inputs, exchange.n_inputs, INPUT_SIZE),
         mat(exchange.before, exchange.n_inputs, INPUT_SIZE),
@@ -99,12 +96,12 @@ def _clear(begin: Any, exchange: Any, drive: Any, workspace: Any, clock: Any) ->
     state, blank = ivec(begin.state, begin.n_blank), ivec(begin.blank, begin.n_blank)
     for i in range(begin.n_blank):
         state[i] = blank[i]
-    clock[MAX_STEP] = longest
+    clock.max_step = longest
     for k in range(exchange.n_inputs):
         for i in range(INPUT_SIZE):
             inputs[k, i] = kept[k, i]
-    vec(drive.goals, GOALS_SIZE)[HANDLED_AT] = np.nan
-    ivec(drive.counts, COUNTS_SIZE)[EVENTS] = 0
+    goals_at(drive.goals).handled_at = np.nan
+    counts_at(drive.counts).events = 0
     pending = ivec(drive.pending, workspace.n_contacts)
     for k in range(workspace.n_contacts):
         pending[k] = 0
@@ -129,8 +126,7 @@ def _turn(begin: Any, workspace: Any, n_inputs: int, t0: float) -> None:
 @internal
 def _count_from_here(drive: Any, t0: float) -> None:
     """Counters and the guard against endless events begin."""
-    counts, guard = ivec(drive.counts, COUNTS_SIZE), vec(drive.guard, GUARD_SIZE)
-    for i in range(COUNTS_SIZE):
-        if i != EVENTS:
-            counts[i] = 0
+    counts, guard = counts_at(drive.counts), vec(drive.guard, GUARD_SIZE)
+    counts.budget = counts.handled = counts.here = counts.status = 0
+    counts.cause = counts.remedy = counts.attempts = counts.answer = 0
     guard[0], guard[1], guard[2] = t0, t0, 0.0

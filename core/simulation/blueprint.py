@@ -12,7 +12,6 @@ from ..assembly.assembly import Assembly
 from ..compiled.image import Image, twin
 from ..compiled.records import ArrayRecord
 from ..errors import ModelError
-from ..state.run_records import MAX_STEP
 from .simulation import Simulation
 
 _BLANK = ("samples", "log", "events")
@@ -98,7 +97,7 @@ def take_numbers(sim: Simulation, system: Any, assembly: Assembly) -> None:
     sim.workspace.take_numbers(assembly)
     sim.drive.take_numbers(assembly)
     sim._loop.arrays["leap"][:] = assembly.leap
-    sim.clock[MAX_STEP] = min(sim.settings.max_step or np.inf, assembly.longest_step)
+    sim.clock.max_step = min(sim.settings.max_step or np.inf, assembly.longest_step)
     sim.table = sim.table.moved(assembly)
     sim.__dict__.pop("model_hash", None)
 

@@ -21,7 +21,6 @@ from ..methods.registry import Formula
 from ..rounding import RATE_ROUNDING
 from ..stage.accelerations import solve_accelerations
 from ..state.modes import ACTIVE, AT_LIMIT, CLOSED, OF_FIRST, OF_NORMAL, OF_SECOND, STICKS, contact_memories
-from ..state.run_records import HANDLED, HERE
 from ..state.workspace_records import OK
 from .drive_record import Drive
 from .failures import failure_of
@@ -40,7 +39,7 @@ class ContactSide:
     events: list[Event]
     redundant: tuple[RedundantRow, ...]
     method_arrays: dict[str, NDArray[Any]]
-    clock: NDArray[np.float64]
+    clock: Any
     drive: Drive
     scales: Scales
 
@@ -181,12 +180,12 @@ class ContactSide:
     @property
     def events_here(self) -> int:
         """How often events have been handled at the present instant, without progress in time."""
-        return int(self.drive.counts[HERE])
+        return int(self.drive.counts.here)
 
     @property
     def events_handled(self) -> int:
         """Instants with events so far."""
-        return int(self.drive.counts[HANDLED])
+        return int(self.drive.counts.handled)
 
     def unsettled(self) -> list[int]:
         """Closed contacts whose mode does not fit the forces at the workspace's point: they pull, or are held beyond

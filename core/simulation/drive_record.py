@@ -24,41 +24,27 @@ from ..state.impact_law_codes import code_of
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,
-    ANSWER,
-    ATTEMPTS,
-    BUDGET,
-    CAUSE,
     COUNTS_SIZE,
-    DIVIDED_UNTIL,
     DRIVE,
     EVENT_KINDS,
     EVENT_ROWS,
     EVENT_SIZE,
-    EVENTS,
-    FAILURES,
-    FIXED_STEP,
     FORCE_NUMBERS,
     FOUND_SIZE,
     GAINS,
-    GOAL,
     GOALS_SIZE,
-    HALVINGS,
-    HANDLED_AT,
     JUMPS,
-    LAST_STOP,
     LEFT_APPROACH,
     LOCATE_SIGNATURE,
-    PARTS_UNTIL,
-    PASSED,
     RECOVER_SIGNATURE,
-    REMEDY,
     ROUNDS,
     RUN_SIGNATURE,
     SAMPLE_SIGNATURE,
     SETTLE_SIGNATURE,
-    STATUS,
     TRIAL_SIGNATURE,
     UNSHARED_LOAD,
+    counts_of,
+    goals_of,
 )
 from ..time_loop.drive import (
     aim_now,
@@ -142,8 +128,9 @@ class Drive:
         self._told: set[int] = set()
         self._laws = {c.name: type(c.law).__name__ for c in contacts}
         count = max(len(contacts), 1)
-        self.goals, self.counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
-        self.goals[HANDLED_AT] = np.nan
+        goals, counts = np.zeros(GOALS_SIZE), np.zeros(COUNTS_SIZE, dtype=np.int64)
+        self.goals, self.counts = goals_of(goals), counts_of(counts)
+        self.goals.handled_at = np.nan
         self.pending = np.zeros(count, dtype=np.int64)
         rows = 2 * MOST_EVENTS * len(contacts) + assembly.m_joints
         self.events = np.zeros((max(EVENT_ROWS, rows) if contacts or assembly.breakpoints else 1, EVENT_SIZE))
@@ -152,7 +139,7 @@ class Drive:
         self._record = ArrayRecord(
             DRIVE,
             {
-                "goals": self.goals, "counts": self.counts, "guard": guard.numbers, "pending": self.pending,
+                "goals": goals, "counts": counts, "guard": guard.numbers, "pending": self.pending,
                 **_numbers_of(assembly),
                 "found": np.zeros((count, FOUND_SIZE)), "events": self.events, "last_trial": np.zeros(1),
                 "nearest": np.zeros(NEAREST),
@@ -190,9 +177,9 @@ class Drive:
         """The same in a copy of its memory (`compiled/image.py`)."""
         new = twin(self)
         new._record, new.instant = self._record.moved(take), self.instant.moved(take)
-        new.goals, new.counts, new.pending, new.events = map(
-            new._record.arrays.__getitem__, ("goals", "counts", "pending", "events")
-        )
+        arrays = new._record.arrays
+        new.goals, new.counts = goals_of(arrays["goals"]), counts_of(arrays["counts"])
+        new.pending, new.events = arrays["pending"], arrays["events"]
         return new
 
     def take_numbers(self, assembly: Assembly) -> None:
@@ -202,12 +189,12 @@ class Drive:
 
     def go(self, t: float, stop: float, budget: int, hold: bool) -> int:
         """`drive` to `t` (s); no step goes beyond `stop`."""
-        self.goals[GOAL], self.goals[LAST_STOP], self.counts[BUDGET] = t, stop, budget
+        self.goals.goal, self.goals.last_stop, self.counts.budget = t, stop, budget
         return int(drive(self._record.record, hold))
 
     def aim(self, t: float, stop: float) -> None:
         """Set the clock of the loop for the way to `t` (s); no step goes beyond `stop`."""
-        self.goals[GOAL], self.goals[LAST_STOP] = t, stop
+        self.goals.goal, self.goals.last_stop = t, stop
         aim_now(self._record.record)
 
     def locate(self, trial: int) -> int:
@@ -233,18 +220,19 @@ class Drive:
 
     def pass_breakpoint(self, t: float) -> int:
         """Go on behind the breakpoint t (s), just after the newest row: a status, as `settle`."""
-        self.goals[PASSED] = t
+        self.goals.passed = t
         return int(pass_breakpoint(self._record.record))
 
     def answer(self, what: int) -> None:
         """Answer what the policy has asked for (`recovery/policy.py`): NOT_DONE, DONE or OTHER_ROWS."""
-        self.counts[ANSWER] = what
+        self.counts.answer = what
 
-    def end_recovery(self, clock: NDArray[np.float64]) -> None:
+    def end_recovery(self, clock: Any) -> None:
         """Nothing is asked for any more, and if the run goes on all the same it does so with whole steps."""
-        self.counts[[CAUSE, REMEDY, ATTEMPTS, ANSWER]] = 0
-        clock[FIXED_STEP] *= 2.0 ** clock[HALVINGS]
-        clock[[HALVINGS, FAILURES, DIVIDED_UNTIL, PARTS_UNTIL]] = 0.0
+        counts = self.counts
+        counts.cause = counts.remedy = counts.attempts = counts.answer = 0
+        clock.fixed_step *= 2.0**clock.halvings
+        clock.halvings = clock.failures = clock.divided_until = clock.parts_until = 0.0
 
     def without_impulse(self) -> str:
         """Name of the first contact that steps of impulses cannot pass; empty: there is none."""
@@ -268,7 +256,7 @@ class Drive:
     @property
     def status(self) -> int:
         """Why pending events could not be settled: a status of `events/records.py`."""
-        return int(self.counts[STATUS])
+        return int(self.counts.status)
 
     def give_room(self) -> None:
         """More room for the instants of this run."""
@@ -286,8 +274,8 @@ class Drive:
 
     def take_events(self) -> list[Event]:
         """The events since the last call."""
-        rows: NDArray[np.float64] = self.events[: self.counts[EVENTS]]
-        self.counts[EVENTS] = 0
+        rows: NDArray[np.float64] = self.events[: self.counts.events]
+        self.counts.events = 0
         found, gains, jumps, rounds = [], [], [], []
         for t, kind, k, *numbers in rows.tolist():
             if kind == JUMPS:

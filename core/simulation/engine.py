@@ -31,8 +31,8 @@ from ..recovery.near_singular import smooth_query, strained
 from ..stage import OUTER_LOOPS
 from ..stage.corotating import solve_spinning_stage
 from ..state.method_records import step_address
-from ..state.run_records import HANDLED, HANDLED_AT, HERE
-from ..state.workspace_records import FACTOR_AGE, MAX_OUTER, OK, OUTER_LOOP, REANALYZE, STAGE_SIGNATURE
+from ..state.run_records import clock_of
+from ..state.workspace_records import OK, REANALYZE, STAGE_SIGNATURE, control_of, convergence_of
 from ..time_loop.sample import write_sample
 from ..tolerances import DEFAULT_ATOL
 from .beginning import Beginning
@@ -143,7 +143,7 @@ class Engine(ContactSide):
                 "which locates events"
             )
         self.beginning = Beginning(self)
-        set_control(self.settings, self.formula, self.assembly, self.workspace.arrays["control"])
+        set_control(self.settings, self.formula, self.assembly, control_of(self.workspace.arrays["control"]))
         self.step_logs: list[NDArray[np.float64]] = []
         self.samples: list[NDArray[np.float64]] = []
         self.scales: Scales
@@ -163,7 +163,7 @@ class Engine(ContactSide):
         """Names for arrays of the records."""
         loop = self._loop.arrays
         self.method_arrays = self._method.arrays
-        self.clock, self.watch, self.brackets = loop["clock"], loop["watch"], loop["brackets"]
+        self.clock, self.watch, self.brackets = clock_of(loop["clock"]), loop["watch"], loop["brackets"]
         self.buffer, self.cursor = loop["samples"], loop["cursor"]
         self.log_buffer, self.log_cursor = loop["log"], loop["log_cursor"]
 
@@ -187,9 +187,9 @@ class Engine(ContactSide):
         self.workspace.make_basis(loop.basis_rows)
         corotating = address_of(solve_spinning_stage, STAGE_SIGNATURE) if self.formula.stage is None else 0
         self.workspace.use_stage(address_of(self.formula.stage or loop.stage, STAGE_SIGNATURE), corotating)
-        control = self.workspace.arrays["control"]
-        control[MAX_OUTER], control[OUTER_LOOP] = loop.most_iterations, {"newton": 0.0, "simple": 1.0}.get(name, 2.0)
-        self.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+        control = control_of(self.workspace.arrays["control"])
+        control.max_outer, control.outer_loop = loop.most_iterations, {"newton": 0.0, "simple": 1.0}.get(name, 2.0)
+        convergence_of(self.workspace.arrays["rate"]).factor_age = -1.0
 
     # ---- at event rate ----------------------------------------
 
@@ -211,9 +211,9 @@ class Engine(ContactSide):
     def _note_instant(self, pending: list[int]) -> None:
         """One more instant with events, which Python handles."""
         t = self.t_internal
-        count = self.events_here + 1 if t == self.drive.goals[HANDLED_AT] else 1
-        self.drive.goals[HANDLED_AT], self.drive.counts[HERE] = t, count
-        self.drive.counts[HANDLED] += 1
+        count = self.events_here + 1 if t == self.drive.goals.handled_at else 1
+        self.drive.goals.handled_at, self.drive.counts.here = t, count
+        self.drive.counts.handled += 1
         self.guard.note(t, count, [self.assembly.contacts[k].name for k in pending])
 
     def _handle_otherwise(self, pending: list[int]) -> None:

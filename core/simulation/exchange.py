@@ -30,16 +30,12 @@ from ..rounding import PUNCTUAL, SAME_INPUT
 from ..stage.accelerations import solve_accelerations
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
-    BUDGET,
-    COUNTS_SIZE,
-    GOALS_SIZE,
-    HANDLED,
-    LAST_STOP,
     REACHED,
     call_accelerations,
+    counts_at,
+    goals_at,
 )
-from ..state.run_records import GOAL as GOAL_TIME
-from ..state.workspace_records import COUNTERS_SIZE, OK, STEPS
+from ..state.workspace_records import OK, counters_at
 from ..time_loop.drive import drive_at, drive_on, loop_at, method_at, workspace_at
 from . import advance
 from .exchange_record import (
@@ -165,9 +161,9 @@ def exchange(exchange: Any) -> int:
     if changes < 0 or (changes > 0 and not _change_inputs(exchange, workspace, method, loop, True)):
         return DECLINED
     times = vec(exchange.times, TIMES_SIZE)
-    goals, counts = vec(drive.goals, GOALS_SIZE), ivec(drive.counts, COUNTS_SIZE)
-    goals[GOAL_TIME], goals[LAST_STOP], counts[BUDGET] = times[ASKED_TIME], _stop(times), exchange.chunk
-    times[STEPS_BEFORE] = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED]
+    goals, counts = goals_at(drive.goals), counts_at(drive.counts)
+    goals.goal, goals.last_stop, counts.budget = times[ASKED_TIME], _stop(times), exchange.chunk
+    times[STEPS_BEFORE] = counters_at(workspace.counters).steps + counts.handled
     code = drive_on(drive, workspace, method, loop, False)
     if code != REACHED:
         return code

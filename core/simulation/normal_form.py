@@ -22,51 +22,12 @@ from ..state.method_records import CARRIES, CHOICE_SIZE, NEXT_K, NEXT_NORM, RING
 from ..state.modes import CLOSED, OPEN, STICKS, memories_at
 from ..state.modes import STEP_FORCES as BLOCKS
 from ..state.run_records import (
-    A2,
-    ANSWER,
-    ATTEMPTS,
-    B2,
-    BREAK_TIME,
-    BUDGET,
-    CALM,
-    CAUSE,
-    CLOCK_SIZE,
-    COUNTS_SIZE,
-    CROWDED,
-    DIVIDED_UNTIL,
     DRIVE_TYPE,
-    EQUAL_STEPS,
-    EVENTS,
-    FAILURES,
-    FIXED_STEP,
-    GOAL,
-    GOALS_SIZE,
-    HALVINGS,
-    HANDLED,
-    HANDLED_AT,
-    HERE,
-    LAST_STOP,
-    PARTS_UNTIL,
-    PASSED,
-    PREVIOUS_NORM,
-    PREVIOUS_RATIO,
-    PUSH_STEP,
-    PUSHED_FROM,
-    PUSHED_UNTIL,
-    PUSHES,
-    PUSHES_LEFT,
-    REJECTED_HERE,
-    REMEDY,
-    REPAIRED_AT,
-    STATUS,
-    STEP_SIZE,
-    STOP_TIME,
-    TARGET_TIME,
-    TRIAL_STEP,
-    WINDOW_COUNT,
-    WINDOW_START,
+    clock_at,
+    counts_at,
+    goals_at,
 )
-from ..state.workspace_records import CORRECTION, FAILED_NORM, RATE_SIZE, WORST_CONDITION
+from ..state.workspace_records import convergence_at
 from ..time_loop.drive import drive_at, loop_at, method_at, workspace_at
 from .exchange_record import ASKED_TIME as GOAL_TIME
 from .exchange_record import EXCHANGE, NOW, STEPS_BEFORE, TIMES_SIZE
@@ -89,15 +50,15 @@ def normalise(exchange: Any, shift: int) -> bool:
     workspace, method = workspace_at(drive.workspace), method_at(drive.method)
     _normalise(drive, workspace, method, loop_at(drive.loop), shift)
     goals, counts, times = (
-        vec(drive.goals + shift, GOALS_SIZE),
-        ivec(drive.counts + shift, COUNTS_SIZE),
+        goals_at(drive.goals + shift),
+        counts_at(drive.counts + shift),
         vec(exchange.times + shift, TIMES_SIZE),
     )
-    goals[GOAL] = goals[LAST_STOP] = goals[PASSED] = 0.0
-    counts[BUDGET] = counts[HANDLED] = counts[EVENTS] = counts[STATUS] = 0
-    counts[CAUSE] = counts[REMEDY] = counts[ATTEMPTS] = counts[ANSWER] = 0
-    if goals[HANDLED_AT] != history_time(method, 0):
-        goals[HANDLED_AT], counts[HERE] = np.nan, 0
+    goals.goal = goals.last_stop = goals.passed = 0.0
+    counts.budget = counts.handled = counts.events = counts.status = 0
+    counts.cause = counts.remedy = counts.attempts = counts.answer = 0
+    if goals.handled_at != history_time(method, 0):
+        goals.handled_at, counts.here = np.nan, 0
     times[NOW] = times[GOAL_TIME] = times[STEPS_BEFORE] = 0.0
     wanted, chosen = (
         ivec(workspace.wanted + shift, workspace.n_contacts),
@@ -163,49 +124,49 @@ def _place_newest(workspace: Any, method: Any, shift: int) -> None:
 def _forget_used(workspace: Any, method: Any, shift: int) -> None:
     """What a step, or the search for its order, has said to whoever made it."""
     error, choice, rate = (
-        vec(method.error + shift, 2), vec(method.choice + shift, CHOICE_SIZE), vec(workspace.rate + shift, RATE_SIZE)
+        vec(method.error + shift, 2), vec(method.choice + shift, CHOICE_SIZE), convergence_at(workspace.rate + shift)
     )  # fmt: skip
     error[0] = error[1] = choice[NEXT_K] = choice[NEXT_NORM] = 0.0
-    rate[FAILED_NORM] = rate[CORRECTION] = rate[WORST_CONDITION] = 0.0
+    rate.failed_norm = rate.correction = rate.worst_condition = 0.0
 
 
 @internal
 def _forget_in_clock(drive: Any, workspace: Any, method: Any, loop: Any, shift: int) -> None:
     """Where the last way went, and what fixed steps, or contacts without friction, have no use for."""
-    clock = vec(loop.clock + shift, CLOCK_SIZE)
-    clock[STOP_TIME] = clock[TRIAL_STEP] = clock[TARGET_TIME] = clock[BREAK_TIME] = clock[REJECTED_HERE] = 0.0
-    if clock[FIXED_STEP] > 0.0:
-        clock[STEP_SIZE] = clock[FIXED_STEP]
-        clock[EQUAL_STEPS] = clock[PREVIOUS_NORM] = 0.0
-    if clock[REPAIRED_AT] != history_time(method, 0):
-        clock[REPAIRED_AT] = -np.inf
-    if clock[HALVINGS] == 0.0:
-        clock[FAILURES] = clock[DIVIDED_UNTIL] = clock[PARTS_UNTIL] = 0.0
+    clock = clock_at(loop.clock + shift)
+    clock.stop_time = clock.trial_step = clock.target_time = clock.break_time = clock.rejected_here = 0.0
+    if clock.fixed_step > 0.0:
+        clock.step_size = clock.fixed_step
+        clock.equal_steps = clock.previous_norm = 0.0
+    if clock.repaired_at != history_time(method, 0):
+        clock.repaired_at = -np.inf
+    if clock.halvings == 0.0:
+        clock.failures = clock.divided_until = clock.parts_until = 0.0
     if loop.rows == 1:
-        clock[EQUAL_STEPS] = 0.0
-    if clock[PREVIOUS_NORM] == 0.0:
-        clock[PREVIOUS_RATIO] = 0.0
-    elif clock[B2] == 0.0 and clock[A2] == 0.0:
+        clock.equal_steps = 0.0
+    if clock.previous_norm == 0.0:
+        clock.previous_ratio = 0.0
+    elif clock.b2 == 0.0 and clock.a2 == 0.0:
         # the elementary controller asks only whether there is one
-        clock[PREVIOUS_NORM] = clock[PREVIOUS_RATIO] = 1.0
+        clock.previous_norm = clock.previous_ratio = 1.0
     friction, rubs = vec(drive.friction, workspace.n_contacts), False
     for k in range(workspace.n_contacts):
         rubs = rubs or friction[k] > 0.0
     if not rubs:
-        clock[CROWDED] = 0.0
+        clock.crowded = 0.0
         if workspace.n_contacts < MANY_TOUCH:
-            clock[WINDOW_START] = clock[WINDOW_COUNT] = 0.0
-    if clock[PUSH_STEP] == 0.0:
-        clock[PUSHES_LEFT] = clock[CALM] = clock[PUSHED_FROM] = 0.0
+            clock.window_start = clock.window_count = 0.0
+    if clock.push_step == 0.0:
+        clock.pushes_left = clock.calm = clock.pushed_from = 0.0
     lately = pushed_lately(workspace, loop, history_time(method, 0))
-    if clock[PUSH_STEP] == 0.0 and not lately and not only_impulses(loop):
-        clock[PUSHES] = clock[PUSHED_UNTIL] = 0.0
+    if clock.push_step == 0.0 and not lately and not only_impulses(loop):
+        clock.pushes = clock.pushed_until = 0.0
 
 
 @internal
 def _forget_in_memories(drive: Any, workspace: Any, loop: Any, shift: int) -> None:
     """Of contacts: what their law does not ask for in their mode."""
-    pushing = vec(loop.clock + shift, CLOCK_SIZE)[PUSH_STEP] != 0.0
+    pushing = clock_at(loop.clock + shift).push_step != 0.0
     memories, law = memories_at(workspace.memory + shift, workspace.n_contacts), ivec(drive.law, workspace.n_contacts)
     for k in range(workspace.n_contacts):
         memory = memories[k]

@@ -15,7 +15,7 @@ from ..methods.multistep import rows_available
 from ..model.derived import HEAD_SIZE, derive_group
 from ..recovery.near_singular import STRAINED_GROWTH
 from ..state.modes import ACTIVE, CLOSED
-from ..state.workspace_records import LEAST_CONDITION, OK, RATE_SIZE, WORST_CONDITION
+from ..state.workspace_records import OK, convergence_at
 from ..time_loop.sample import write_row
 from .exchange_record import ASKED_TIME, ENERGIES, FORCES, INITIAL_ENERGY, OF_GROUPS, TIMES_SIZE, call_query
 
@@ -23,8 +23,8 @@ from .exchange_record import ASKED_TIME, ENERGIES, FORCES, INITIAL_ENERGY, OF_GR
 @internal
 def near_singular(workspace: Any, method: Any, t: float) -> bool:
     """`strained` at time t."""
-    rate = vec(workspace.rate, RATE_SIZE)
-    strained = rate[WORST_CONDITION] > STRAINED_GROWTH * rate[LEAST_CONDITION] > 0.0
+    rate = convergence_at(workspace.rate)
+    strained = rate.worst_condition > STRAINED_GROWTH * rate.least_condition > 0.0
     inside = rows_available(method) > 1 and history_time(method, 1) < t < history_time(method, 0)
     return (strained and inside) or bridge_rows(method) > 0
 

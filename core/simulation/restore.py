@@ -11,8 +11,7 @@ from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event, Fallback
 from ..methods.history import recall
 from ..stage.accelerations import solve_accelerations
-from ..state.run_records import HANDLED_AT, HERE
-from ..state.workspace_records import FACTOR_AGE, OK
+from ..state.workspace_records import OK, convergence_of
 from .snapshot import Snapshot, snapshot_of, take_snapshot
 from .state import State
 
@@ -99,7 +98,7 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
     sim.t, sim.pending = parts.t, list(parts.pending)
     sim.start_open, sim.input_times = parts.start_open, parts.input_times
     sim.table.initial_energy = parts.initial_energy
-    sim.drive.goals[HANDLED_AT], sim.drive.counts[HERE] = parts.handled
+    sim.drive.goals.handled_at, sim.drive.counts.here = parts.handled
     if sim.stored_events is not events or len(sim.events) != len(events):  # events are only ever added
         sim.events, sim.stored_events = list(events), events
 
@@ -142,7 +141,7 @@ def restart_here(sim: "Simulation", is_present: bool = False) -> None:
     # the modes are the same and the structure fits them; only pivots that have degraded call for a new one
     if solve_accelerations(workspace) == OK:
         sim.begin_rates()
-        sim.workspace.arrays["rate"][FACTOR_AGE] = -1.0
+        convergence_of(sim.workspace.arrays["rate"]).factor_age = -1.0
     else:
         try:
             sim.use_modes()

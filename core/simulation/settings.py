@@ -5,28 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..assembly.assembly import Assembly
 from ..errors import ModelError
 from ..methods.method import Formula
 from ..rounding import CONSTRAINT_TOLERANCES, FINEST
 from ..stage import OUTER_LOOPS
 from ..stage.simple import MOST_DEPTH
-from ..state.workspace_records import (
-    ACCELERATION,
-    ACCELERATION_TOLERANCE,
-    ATOL,
-    IS_LINEAR,
-    MAX_INNER,
-    MOST_CONDITION,
-    MOST_SLACK,
-    NEWTON_TOLERANCE,
-    POSITION_TOLERANCE,
-    RTOL,
-    VELOCITY_TOLERANCE,
-)
 from ..time_loop.controllers import CONTROLLERS
 
 ACCELERATIONS = ("none", "aitken", "anderson")
@@ -38,7 +22,7 @@ CONSTRAINT_SHARE = 0.002
 """Of the finest absolute tolerance: what a violation of the constraints may be. The solution of the constraints and the
 level of the coordinates (`position_level`) enlarge it by ten and more."""
 LEAST_EXACTNESS = 1e-2
-"""Rounding allows no more (`EXACTNESS`)."""
+"""Rounding allows no more (`exactness`)."""
 TOLERANCE_KINDS = ("length", "angle", "speed", "angular_speed")
 """What absolute tolerances can be told apart by: translations, rotations and their rates."""
 SINGULAR_NOISE = 2.5e13
@@ -132,23 +116,23 @@ DEFAULT_NEWTON_TOLERANCE = 1e-10
 what rounding leaves in stiff bodies is not far below."""
 
 
-def set_control(settings: Settings, formula: Formula, assembly: Assembly, control: NDArray[np.float64]) -> None:
+def set_control(settings: Settings, formula: Formula, assembly: Assembly, control: Any) -> None:
     """Fill the workspace's control numbers, but for those of the outer loop (`Engine.use_outer_loop`) and those that
     the model's own scales are needed for (`begin_measure.py`)."""
     if settings.step is not None:
         # fixed steps have no error weights: the outer loop's tolerance takes their place, with weight 1
-        control[RTOL] = control[ATOL] = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
-        control[NEWTON_TOLERANCE] = 1.0
+        control.rtol = control.atol = settings.newton_tolerance or DEFAULT_NEWTON_TOLERANCE
+        control.newton_tolerance = 1.0
     else:
-        control[RTOL] = formula.working_tolerance(settings.rtol)
-        control[NEWTON_TOLERANCE] = settings.newton_tolerance or max(
-            formula.newton_tolerance, min(0.01, FINEST / control[RTOL])
+        control.rtol = formula.working_tolerance(settings.rtol)
+        control.newton_tolerance = settings.newton_tolerance or max(
+            formula.newton_tolerance, min(0.01, FINEST / control.rtol)
         )
-    control[POSITION_TOLERANCE], control[VELOCITY_TOLERANCE], control[ACCELERATION_TOLERANCE] = CONSTRAINT_TOLERANCES
-    control[ACCELERATION] = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
+    control.position_tolerance, control.velocity_tolerance, control.acceleration_tolerance = CONSTRAINT_TOLERANCES
+    control.acceleration = {"none": 0.0, "aitken": 1.0, "anderson": 1.0 + settings.depth}[settings.acceleration]
     # with a contraction of a tenth, down to CONSTRAINT_TOLERANCES
-    control[MAX_INNER] = 13.0
-    control[MOST_SLACK] = formula.slack
-    control[IS_LINEAR] = float(assembly.linear)
+    control.max_inner = 13.0
+    control.most_slack = formula.slack
+    control.is_linear = float(assembly.linear)
     # accelerations carry the rounding of the constraints times condition^3: from here on the outer loop would see it
-    control[MOST_CONDITION] = max(6.0, (control[RTOL] * SINGULAR_NOISE) ** (1.0 / 3.0))
+    control.most_condition = max(6.0, (control.rtol * SINGULAR_NOISE) ** (1.0 / 3.0))

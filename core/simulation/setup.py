@@ -30,23 +30,13 @@ from ..state.method_records import (
     step_address,
 )
 from ..state.run_records import (
-    A2,
     ACCELERATIONS_SIGNATURE,
-    B1,
-    B2,
-    BREAK_TIME,
     CLOCK_SIZE,
-    EAGER,
     FIND_EVENTS_SIGNATURE,
-    FIXED_STEP,
-    HOLD,
-    LARGEST_GROWTH,
     LOG_COLUMNS,
     LOOP,
-    MAX_STEP,
-    REPAIRED_AT,
-    STOP_TIME,
     WATCH,
+    clock_of,
 )
 from ..time_loop.controllers import CONTROLLERS
 from ..time_loop.sample import empty_buffer, sample_length
@@ -95,16 +85,16 @@ def build_method(formula: Formula, settings: Settings, assembly: Assembly, state
     return ArrayRecord(METHOD, arrays, {"capacity": HISTORY_ROWS, "exact": int(formula.exact)})
 
 
-def _set_clock(clock: NDArray[np.float64], formula: Formula, settings: Settings, longest_step: float) -> None:
+def _set_clock(clock: Any, formula: Formula, settings: Settings, longest_step: float) -> None:
     """What the time loop knows about steps before the first one (`records.py`)."""
-    clock[FIXED_STEP] = settings.step or 0.0
-    clock[LARGEST_GROWTH], clock[HOLD] = formula.growth, float(formula.rows)
+    clock.fixed_step = settings.step or 0.0
+    clock.largest_growth, clock.hold = formula.growth, float(formula.rows)
     controller = CONTROLLERS[settings.controller]
-    clock[B1], clock[B2], clock[A2] = controller.b1, controller.b2, controller.a2
-    clock[EAGER] = float(settings.fallback)
-    clock[MAX_STEP] = min(settings.max_step or math.inf, longest_step)
-    clock[STOP_TIME] = clock[BREAK_TIME] = math.inf
-    clock[REPAIRED_AT] = -math.inf
+    clock.b1, clock.b2, clock.a2 = controller.b1, controller.b2, controller.a2
+    clock.eager = float(settings.fallback)
+    clock.max_step = min(settings.max_step or math.inf, longest_step)
+    clock.stop_time = clock.break_time = math.inf
+    clock.repaired_at = -math.inf
 
 
 def build_loop(
@@ -121,7 +111,7 @@ def build_loop(
     balls = build_balls(assembly)
     clock, watch = workspace.state["clock"][0], workspace.state["watch"][0]
     impulses = formula.impulses and bool(assembly.contacts)
-    _set_clock(clock, formula, settings, assembly.longest_step)
+    _set_clock(clock_of(clock), formula, settings, assembly.longest_step)
     starter, fine_starter = STARTER if settings.step is None else FINE_STARTER, FINE_STARTER
     if impulses:
         starter = fine_starter = formula.step

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..errors import ConsistencyError, ModelError, SimulationError
 from ..events import Event
-from ..state.run_records import DIVIDED_STEPS, FIXED_STEP, STEP_SIZE
 from ..state.workspace_records import COUNTERS_SIZE
 from . import advance, exchange, inputs, motions, output_rates, restore, sensitivity
 from .engine import Engine, user_errors
@@ -157,12 +156,12 @@ class Simulation(Engine):
     @property
     def step_size(self) -> float:
         """Size of the solver's next step, s: the fixed one, or what error control proposes."""
-        return float(self.clock.item(FIXED_STEP) or self.clock.item(STEP_SIZE))
+        return float(self.clock.fixed_step or self.clock.step_size)
 
     @property
     def divided_steps(self) -> int:
         """Fixed steps that did not converge and were divided inside."""
-        return int(self.clock.item(DIVIDED_STEPS))
+        return int(self.clock.divided_steps)
 
     @property
     def horizon(self) -> float:

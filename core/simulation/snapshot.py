@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from ..assembly.slots import MATRICES
 from ..assembly.state_fields import STATE_ARRAYS
 from ..assembly.structure_switch import Key
-from ..state.run_records import HANDLED_AT, HERE
 from .normal_form import normalise_buffer
 
 if TYPE_CHECKING:
@@ -134,7 +133,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
     normalise_buffer(drive.record.record, buffer.__array_interface__["data"][0])
     factors = [_copied(*lu.parts()) for lu in (structure.kkt, *partition.factorizations)]
     factors.insert(OF_QUERY, _for_queries(*structure.kkt_query.parts()))
-    now, handled_at = sim.t_internal, drive.goals.item(HANDLED_AT)
+    now, handled_at = sim.t_internal, drive.goals.handled_at
     return Snapshot(
         buffer,
         workspace.state.dtype,
@@ -146,7 +145,7 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
         workspace.dropped,
         sim.t,
         tuple(sim.pending),
-        (handled_at, drive.counts.item(HERE)) if handled_at == now else (math.nan, 0),
+        (handled_at, drive.counts.here) if handled_at == now else (math.nan, 0),
         sim.outer,
         sim.start_open,
         sim.input_times,

@@ -18,7 +18,7 @@ from ..errors import ConsistencyError, SimulationError
 from ..events.records import DECLINED, SETTLED, WANT_MEMORY
 from ..rounding import START_MOVED
 from ..state.modes import ACTIVE
-from ..state.workspace_records import ENERGY_SCALE, RATE_SCALE
+from ..state.workspace_records import control_of
 from . import motions
 from .begin import NO_POSITIONS, NO_VELOCITIES, OVERLAPS, SINGULAR_START, START_UNSOLVED
 from .begin_now import measure_now, place_now, start_now
@@ -55,8 +55,8 @@ def begin(sim: "Engine") -> None:
     status = _act(sim, measure_now)
     if status != SETTLED:
         raise RuntimeError(f"status {status} of a measurement is not known")
-    control = sim.workspace.arrays["control"]
-    sim.scales = Scales(sim.assembly.length, float(control[RATE_SCALE]), float(control[ENERGY_SCALE]))
+    control = control_of(sim.workspace.arrays["control"])
+    sim.scales = Scales(sim.assembly.length, control.rate_scale, control.energy_scale)
     start(sim)
 
 

@@ -19,24 +19,7 @@ from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
 from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE_NAMES, STICKS, contact_memories
 from ..state.run_records import (
-    A2,
-    B1,
-    B2,
-    DIVIDED_STEPS,
-    DIVIDED_UNTIL,
-    EAGER,
-    EQUAL_STEPS,
-    FAILURES,
-    FIXED_STEP,
-    HALVINGS,
-    HOLD,
-    LARGEST_GROWTH,
-    MAX_STEP,
-    PARTS_UNTIL,
-    PREVIOUS_NORM,
-    PREVIOUS_RATIO,
-    REJECTED_HERE,
-    STEP_SIZE,
+    clock_of,
 )
 from ..state.workspace_records import COUNTERS_SIZE
 from .state import State
@@ -60,9 +43,11 @@ _FINITE = (
     "guard",
 )
 _NO_NAN = ("inputs", "watch", "clock")
-_SETTINGS = (MAX_STEP, LARGEST_GROWTH, HOLD, EAGER, B1, B2, A2)
-"""Columns of the clock that never change in a run."""
-_NOT_NEGATIVE = (EQUAL_STEPS, PREVIOUS_NORM, PREVIOUS_RATIO, REJECTED_HERE, HALVINGS, FAILURES, DIVIDED_STEPS)
+_SETTINGS = ("max_step", "largest_growth", "hold", "eager", "b1", "b2", "a2")
+"""Fields of the clock that never change in a run."""
+_NOT_NEGATIVE = (
+    "equal_steps", "previous_norm", "previous_ratio", "rejected_here", "halvings", "failures", "divided_steps",
+)  # fmt: skip
 _LARGEST_COUNT = 2**53
 _HUGE = 1e300
 _SLIDES = (STICKS, IDLE, 1.0, -1.0)
@@ -88,7 +73,7 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + left_out + sim.assembly.n)
     _check_memory(sim, state)
     _check_method(sim, arrays, own.arrays)
-    _check_clock(arrays["clock"], own.arrays["clock"])
+    _check_clock(clock_of(arrays["clock"]), clock_of(own.arrays["clock"]))
     newest = _newest_time(arrays)
     t = state.facts["t"]
     _need("t", t <= newest and (arrays["method_ring"][1] < 2 or t >= _time_before(arrays)), f"{t!r} s is not in a step")
@@ -250,15 +235,16 @@ def _check_method(sim: "Simulation", arrays: dict[str, NDArray[Any]], own: dict[
         _need("method_choice", whole, f"has {k!r} steps of a formula that takes {least:g} to {most:g}")
 
 
-def _check_clock(clock: NDArray[np.float64], own: NDArray[np.float64]) -> None:
-    columns, halvings = list(_SETTINGS), float(clock[HALVINGS])
-    _need("clock", np.array_equal(clock[columns], own[columns]), "has other settings than the simulation")
-    step = float(clock[STEP_SIZE])
+def _check_clock(clock: Any, own: Any) -> None:
+    halvings = clock.halvings
+    same = all(getattr(clock, name) == getattr(own, name) for name in _SETTINGS)
+    _need("clock", same, "has other settings than the simulation")
+    step = clock.step_size
     _need("clock", 0.0 < step < math.inf, f"has a step of {step!r} s")
-    _need("clock", (clock[list(_NOT_NEGATIVE)] >= 0.0).all(), "has counts below zero")
-    known = halvings.is_integer() and halvings <= (MOST_HALVINGS if own[FIXED_STEP] > 0.0 else 0)
+    _need("clock", all(getattr(clock, name) >= 0.0 for name in _NOT_NEGATIVE), "has counts below zero")
+    known = halvings.is_integer() and halvings <= (MOST_HALVINGS if own.fixed_step > 0.0 else 0)
     _need("clock", known, f"has a fixed step halved {halvings!r} times")
-    whole, expected = (float(x[FIXED_STEP] * 2.0 ** x[HALVINGS]) for x in (clock, own))
+    whole, expected = (x.fixed_step * 2.0**x.halvings for x in (clock, own))
     _need("clock", whole == expected, f"has a fixed step of {whole!r} s")
-    parts = clock[[DIVIDED_UNTIL, PARTS_UNTIL]]
-    _need("clock", np.isfinite(parts).all(), f"has a divided step that ends at {parts.tolist()} s")
+    parts = [clock.divided_until, clock.parts_until]
+    _need("clock", all(map(math.isfinite, parts)), f"has a divided step that ends at {parts} s")

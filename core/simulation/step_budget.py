@@ -4,8 +4,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..errors import SimulationError
-from ..state.run_records import TRIAL_STEP
-from ..state.workspace_records import STEPS
+from ..state.workspace_records import counters_of
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -13,7 +12,7 @@ if TYPE_CHECKING:
 
 def step_count(sim: "Simulation") -> int:
     """Steps accepted so far, and instants with events: each of these may begin and end a step."""
-    return int(sim.workspace.arrays["counters"][STEPS]) + sim.events_handled
+    return int(counters_of(sim.workspace.arrays["counters"]).steps) + sim.events_handled
 
 
 def steps_left(sim: "Simulation", first: int, t: float) -> int:
@@ -29,7 +28,7 @@ def steps_left(sim: "Simulation", first: int, t: float) -> int:
     left = first + most - step_count(sim)
     if left > 0:
         return left
-    now, h = sim.t_internal, float(sim.clock[TRIAL_STEP])
+    now, h = sim.t_internal, float(sim.clock.trial_step)
     raise SimulationError(
         f"max_steps = {most} steps (and instants with events) were not enough to reach t = {t:.9g} s: they ended at "
         f"t = {now:.9g} s, and the last was {h:.3g} s long. Ask for a nearer time, give a larger max_steps or looser "

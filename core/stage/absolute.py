@@ -21,28 +21,14 @@ from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..rounding import ONLY_ROUNDING
 from ..state.workspace_records import (
-    CONTROL_SIZE,
-    CORRECTION,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FACTORIZATIONS,
-    LAST_INNER,
-    LAST_OUTER,
-    MAX_OUTER,
-    NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
-    OUTER,
-    OUTER_RATE,
     OUTER_SLOW,
-    POSITION_TOLERANCE,
-    RATE_SIZE,
     REANALYZE,
-    SENSITIVITY,
     SINGULAR,
-    STAGE_ALPHA,
-    STAGE_BETA,
-    VELOCITY_TOLERANCE,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .solver import (
     LEAST_RATE,
@@ -68,20 +54,20 @@ def _factored(workspace: Any, lu_address: int, c_q: float, c_v: float) -> int:
     status = factor_equations(workspace, lu_address)
     if status == 2:
         return REANALYZE
-    ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
+    counters_at(workspace.counters).factorizations += 1
     return OK if status == 0 else SINGULAR
 
 
 @internal
 def refactor_absolute(workspace: Any, c_q: float, c_v: float) -> int:
     """New matrix at the current point."""
-    rate = vec(workspace.rate, RATE_SIZE)
-    rate[FACTOR_AGE] = -1.0
+    rate = convergence_at(workspace.rate)
+    rate.factor_age = -1.0
     status = _factored(workspace, workspace.kkt, c_q, c_v)
     if status != OK:
         return status
-    rate[FACTOR_AGE], rate[OUTER_RATE] = 0.0, 1.0
-    rate[LAST_OUTER], rate[LAST_INNER], rate[SENSITIVITY] = 0.0, 0.0, 0.0
+    rate.factor_age, rate.outer_rate = 0.0, 1.0
+    rate.last_outer, rate.last_inner, rate.sensitivity = 0.0, 0.0, 0.0
     return OK
 
 
@@ -97,8 +83,8 @@ def solve_rows(workspace: Any, c_q: float, c_v: float, index: int) -> None:
         vec(workspace.phid, workspace.m_ext),
         vec(workspace.phidd, workspace.m_ext),
     )
-    control = vec(workspace.control, CONTROL_SIZE)
-    alpha, beta = control[STAGE_ALPHA], control[STAGE_BETA]
+    control = control_at(workspace.control)
+    alpha, beta = control.stage_alpha, control.stage_beta
     for i in range(n):
         rhs[i] = offset[i] - r[i]
     for i in range(workspace.m_act):
@@ -143,11 +129,11 @@ def _holds(workspace: Any, index: int) -> bool:
     """True if the constraints hold that this form solves for at position and velocity level."""
     if index == 1 or workspace.m_act == 0:
         return True
-    control = vec(workspace.control, CONTROL_SIZE)
-    bound = CONSTRAINT_SLACK * control[POSITION_TOLERANCE] * position_level(workspace)
+    control = control_at(workspace.control)
+    bound = CONSTRAINT_SLACK * control.position_tolerance * position_level(workspace)
     if not constraint_norm(workspace, workspace.phi) <= bound:
         return False
-    bound = CONSTRAINT_SLACK * control[VELOCITY_TOLERANCE] * rate_level(workspace)
+    bound = CONSTRAINT_SLACK * control.velocity_tolerance * rate_level(workspace)
     if index == 2:
         return constraint_norm(workspace, workspace.phid) <= bound
     # positions say all of the others
@@ -174,14 +160,14 @@ def _only_rounding(workspace: Any, c_q: float) -> bool:
 
 @internal
 def _iterate(workspace: Any, c_q: float, c_v: float, index: int) -> int:
-    control, rate = vec(workspace.control, CONTROL_SIZE), vec(workspace.rate, RATE_SIZE)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
-    tolerance = control[NEWTON_TOLERANCE]
+    control, rate = control_at(workspace.control), convergence_at(workspace.rate)
+    counters = counters_at(workspace.counters)
+    tolerance = control.newton_tolerance
     previous = np.inf
     renewed = 0
-    for k in range(int(control[MAX_OUTER])):
+    for k in range(int(control.max_outer)):
         solve_rows(workspace, c_q, c_v, index)
-        counters[OUTER] += 1
+        counters.outer += 1
         norm = increment_norm(workspace, c_q, c_v)
         rounding = index == 3 and _only_rounding(workspace, c_q)
         add_increment(workspace, c_q, c_v)
@@ -191,7 +177,7 @@ def _iterate(workspace: Any, c_q: float, c_v: float, index: int) -> int:
             return NOT_FINITE
         evaluate_residuals(workspace)
         if rounding and _holds(workspace, index):
-            rate[LAST_OUTER] = k + 1
+            rate.last_outer = k + 1
             return OK
         if k > 0:
             status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
@@ -201,11 +187,11 @@ def _iterate(workspace: Any, c_q: float, c_v: float, index: int) -> int:
             if status != OK:
                 return status
         previous = norm
-        known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
+        known = min(max(rate.outer_rate, LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance and _holds(workspace, index):
-            rate[LAST_OUTER] = k + 1
+            rate.last_outer = k + 1
             if k == 0:
-                rate[OUTER_RATE] = known * RATE_GROWTH
+                rate.outer_rate = known * RATE_GROWTH
             return OK
     return OUTER_SLOW
 
@@ -216,19 +202,19 @@ def solve_absolute(workspace: Any, t: float, c_q: float, c_v: float, index: int)
 
     `index` says which constraints: 1 Baumgarte's combination, 2 positions and velocities, 3 positions.
     """
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     begin_stage(workspace, t, c_q, c_v)
     if index == 2 and workspace.m_act > 0:
         # its direction is part of the formula: always that of the predicted point, however old the other matrix is
         status = _factored(workspace, workspace.kkt_query, 0.0, 0.0)
         if status != OK:
             return status
-    if rate[FACTOR_AGE] < 0.0 or rate[LAST_OUTER] > MOST_OUTER:
+    if rate.factor_age < 0.0 or rate.last_outer > MOST_OUTER:
         status = refactor_absolute(workspace, c_q, c_v)
         if status != OK:
             return status
-    fresh = rate[FACTOR_AGE] == 0.0
-    rate[FACTOR_AGE] = _USED
+    fresh = rate.factor_age == 0.0
+    rate.factor_age = _USED
     status = _iterate(workspace, c_q, c_v, index)
     if status != OK and not fresh:
         evaluate_prediction(workspace, c_q, c_v)
@@ -236,8 +222,8 @@ def solve_absolute(workspace: Any, t: float, c_q: float, c_v: float, index: int)
         if status != OK:
             return status
         status = _iterate(workspace, c_q, c_v, index)
-    if rate[FACTOR_AGE] == 0.0:
-        rate[FACTOR_AGE] = _USED
+    if rate.factor_age == 0.0:
+        rate.factor_age = _USED
     if index == 2:
         _measure_correction(workspace, c_q)
     return status
@@ -255,4 +241,4 @@ def _measure_correction(workspace: Any, c_q: float) -> None:
     largest = 0.0
     for i in range(workspace.n):
         largest = max(largest, abs(q[i] - q_star[i] - c_q * a[i]) / scale[i])
-    vec(workspace.rate, RATE_SIZE)[CORRECTION] = largest
+    convergence_at(workspace.rate).correction = largest

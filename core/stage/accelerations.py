@@ -10,7 +10,7 @@ from ..assembly.redundant_reactions import factor_equations
 from ..compiled.jit import compiled_unlocked, internal
 from ..compiled.views import ivec, vec
 from ..rounding import ACCELERATIONS_LOST, ACCELERATIONS_SOLVED, COORDINATE_NOISE
-from ..state.workspace_records import CONTROL_SIZE, OK, OUTER_SLOW, REANALYZE, STIFFNESS_SCALE
+from ..state.workspace_records import OK, OUTER_SLOW, REANALYZE, control_at
 from .solver import solve_increment
 
 LOADS_KNOWN = 2
@@ -60,7 +60,7 @@ def solve_accelerations(workspace: Any) -> int:
     # in stiff bodies, coordinates that are nearly equal make large forces that cancel each other
     noise = (
         COORDINATE_NOISE
-        * vec(workspace.control, CONTROL_SIZE)[STIFFNESS_SCALE]
+        * control_at(workspace.control).stiffness_scale
         * _largest(workspace, vec(workspace.q, workspace.n))
     )
     return OK if norm <= max(ACCELERATIONS_LOST * size, noise) < np.inf else OUTER_SLOW

@@ -7,8 +7,7 @@ are linear in (a, lambda): one increment from any guess solves them.
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import vec
-from ..state.workspace_records import FACTOR_AGE, OK, RATE_SIZE
+from ..state.workspace_records import OK, convergence_at
 from .absolute import refactor_absolute, solve_rows
 from .solver import add_increment, begin_stage
 
@@ -19,7 +18,7 @@ def solve_explicit_stage(workspace: Any, t: float, c_q: float, c_v: float) -> in
     begin_stage(workspace, t, c_q, c_v)
     status = refactor_absolute(workspace, c_q, c_v)
     # no later stage takes these factors
-    vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+    convergence_at(workspace.rate).factor_age = -1.0
     if status != OK:
         return status
     solve_rows(workspace, c_q, c_v, 1)

@@ -16,19 +16,11 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..state.workspace_records import (
-    ACCELERATION_TOLERANCE,
-    CONDITION,
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    EXACTNESS,
-    INNER,
     INNER_DIVERGED,
-    LEAST_CONDITION,
-    MAX_INNER,
     OK,
-    POSITION_TOLERANCE,
-    RATE_SIZE,
-    VELOCITY_TOLERANCE,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 
 STRAINED = 8.0  # growth of the condition beyond which the constraints are solved more exactly
@@ -58,9 +50,9 @@ def inner_loop(workspace: Any, lu_address: int, slack: float, acceleration_slack
     Expects the residuals of the current point, or if `part` only what `evaluate_constraints` leaves; leaves the
     residuals of the corrected one. The tolerances are parts of the levels of q, v, a (`assembly/levels.py`).
     """
-    before = ivec(workspace.counters, COUNTERS_SIZE)[INNER]
+    before = counters_at(workspace.counters).inner
     status = OK if workspace.m_act == 0 else _meet(workspace, lu_address, slack, acceleration_slack)
-    if workspace.part_first != 0 and (part or ivec(workspace.counters, COUNTERS_SIZE)[INNER] > before):
+    if workspace.part_first != 0 and (part or counters_at(workspace.counters).inner > before):
         evaluate_residuals(workspace)
     return status
 
@@ -68,22 +60,22 @@ def inner_loop(workspace: Any, lu_address: int, slack: float, acceleration_slack
 @internal
 def _meet(workspace: Any, lu_address: int, slack: float, acceleration_slack: float) -> int:
     """The corrections; leaves what `evaluate_constraints` does."""
-    control = vec(workspace.control, CONTROL_SIZE)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
-    enough_p = slack * control[POSITION_TOLERANCE] * position_level(workspace)
-    enough_v = slack * control[VELOCITY_TOLERANCE] * rate_level(workspace)
-    enough_a = acceleration_slack * control[ACCELERATION_TOLERANCE] * acceleration_level(workspace)
+    control = control_at(workspace.control)
+    counters = counters_at(workspace.counters)
+    enough_p = slack * control.position_tolerance * position_level(workspace)
+    enough_v = slack * control.velocity_tolerance * rate_level(workspace)
+    enough_a = acceleration_slack * control.acceleration_tolerance * acceleration_level(workspace)
     # near a singular position a violation of Phi moves q by condition, v by condition^2 times as much: there the
     # constraints are solved down to rounding, whatever the units
-    rate = vec(workspace.rate, RATE_SIZE)
-    tight = control[EXACTNESS] if slack == 1.0 else 1.0
-    if rate[CONDITION] > STRAINED * rate[LEAST_CONDITION]:
+    rate = convergence_at(workspace.rate)
+    tight = control.exactness if slack == 1.0 else 1.0
+    if rate.condition > STRAINED * rate.least_condition:
         tight = 0.0
     tol_p, tol_v, tol_a = tight * enough_p, tight * enough_v, tight * enough_a
     if acceleration_slack == np.inf:
         tol_a = np.inf
     last_p, last_v, last_a = np.inf, np.inf, np.inf
-    for _ in range(int(control[MAX_INNER])):
+    for _ in range(int(control.max_inner)):
         p = constraint_norm(workspace, workspace.phi)
         v = constraint_norm(workspace, workspace.phid)
         a = constraint_norm(workspace, workspace.phidd)
@@ -115,7 +107,7 @@ def _meet(workspace: Any, lu_address: int, slack: float, acceleration_slack: flo
             last_a = a
         else:
             return OK
-        counters[INNER] += 1
+        counters.inner += 1
         if correct_p:
             correct_dependent(workspace, workspace.lu_p, workspace.m_held, workspace.phi, workspace.q)
         if correct_v:

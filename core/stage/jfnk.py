@@ -17,23 +17,13 @@ from ..assembly.redundant_reactions import solve_equations
 from ..compiled.jit import internal
 from ..compiled.views import ivec, mat, vec
 from ..state.workspace_records import (
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FAILED_NORM,
-    INNER,
-    KRYLOV,
-    LAST_INNER,
-    LAST_OUTER,
-    MAX_OUTER,
-    NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
-    OUTER,
     OUTER_DIVERGED,
-    OUTER_RATE,
     OUTER_SLOW,
-    RATE_SIZE,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .inner import inner_loop
 from .solver import (
@@ -214,7 +204,7 @@ def solve_jfnk_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
         status = prepare_attempt(workspace, c_q, c_v, attempt, SLOW_KRYLOV)
         if status != OK:
             return status
-        fresh = vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        fresh = convergence_at(workspace.rate).factor_age == 1.0
         status = _iterate(workspace, c_q, c_v)
         if status == OK or fresh:
             break
@@ -225,7 +215,7 @@ def solve_jfnk_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
 def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
     """The inexact Newton iteration."""
     control, counters, rate = (
-        vec(workspace.control, CONTROL_SIZE), ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE),
+        control_at(workspace.control), counters_at(workspace.counters), convergence_at(workspace.rate),
     )  # fmt: skip
     n, rows = workspace.n, workspace.m_act + workspace.n_implied
     basis = mat(workspace.basis, workspace.n_basis, workspace.n_ext)
@@ -233,22 +223,22 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
     increment = vec(workspace.rhs, n + rows)
     lam, active = vec(workspace.lam, workspace.m_ext), ivec(workspace.active, rows)
     hessenberg = np.zeros((MOST_VECTORS + 4, MOST_VECTORS + 1))
-    tolerance, slack = control[NEWTON_TOLERANCE], inner_slack(control)
-    start_inner = counters[INNER]
+    tolerance, slack = control.newton_tolerance, inner_slack(control)
+    start_inner = counters.inner
     previous, vectors, forcing = np.inf, 0, MOST_FORCING
     status = OUTER_SLOW
-    for k in range(int(control[MAX_OUTER])):
+    for k in range(int(control.max_outer)):
         status = inner_loop(workspace, workspace.lu_d, slack, np.inf)
         if status != OK:
             return status
         solve_increment(workspace, workspace.kkt)
-        counters[OUTER] += 1
+        counters.outer += 1
         norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
         for i in range(rows):
             lam[active[i]] += increment[n + i]
-        known = min(rate[OUTER_RATE] * RATE_GROWTH, 0.99)
+        known = min(rate.outer_rate * RATE_GROWTH, 0.99)
         # an old preconditioner may hide some of the increment, but not all of it
         if norm > HIDDEN * tolerance:
             for i in range(n):
@@ -259,7 +249,7 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
             evaluate_residuals(workspace)
             _remember(workspace)
             used, left = _gmres(workspace, c_q, c_v, wanted, hessenberg)
-            counters[KRYLOV] += used
+            counters.krylov += used
             vectors = max(vectors, used)
             _return(workspace)
             if left > 0.5:
@@ -271,9 +261,9 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
         if k > 0:
             contraction = norm / previous
             known = min(max(contraction, LEAST_RATE), 0.99)
-            rate[OUTER_RATE] = known
+            rate.outer_rate = known
             if contraction > 0.9 and norm > tolerance:
-                rate[FAILED_NORM] = contraction
+                rate.failed_norm = contraction
                 return OUTER_DIVERGED
             forcing = min(MOST_FORCING, max(LEAST_FORCING, 0.9 * contraction * contraction))
         previous = norm
@@ -284,11 +274,11 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
         status = OUTER_SLOW
         if norm * known / (1.0 - known) <= tolerance:
             status = OK
-            rate[OUTER_RATE] = known
-            rate[LAST_OUTER] = float(vectors)
+            rate.outer_rate = known
+            rate.last_outer = float(vectors)
             break
     if status != OK:
         return status
     status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0)
-    rate[LAST_INNER] = counters[INNER] - start_inner
+    rate.last_inner = counters.inner - start_inner
     return status

@@ -11,23 +11,11 @@ from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
 from ..linalg import factor, lu_at, solve
 from ..state.workspace_records import (
-    CHOICE_CONDITION,
-    CONDITION,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FACTOR_CV,
-    FACTORIZATIONS,
-    FIRST_SENSITIVITY,
-    LAST_INNER,
-    LAST_OUTER,
-    LEAST_CONDITION,
     OK,
-    OUTER_RATE,
-    RATE_SIZE,
     REANALYZE,
-    SENSITIVITY,
     SINGULAR,
-    WORST_CONDITION,
+    convergence_at,
+    counters_at,
 )
 
 # Growth of the condition after which other redundant rows may be the better ones to leave out.
@@ -38,9 +26,9 @@ CHOICE_GROWTH = 3.0
 def refactor(workspace: Any, c_q: float, c_v: float) -> int:
     """New matrices at the current point: [M + c_v D + c_q K, Phi_q^T; Phi_q, 0] and Phi_qd; of positions alone too,
     where they have dependent coordinates of their own."""
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     evaluate_tangent(workspace, c_q, c_v)
-    rate[FACTOR_AGE] = -1.0
+    rate.factor_age = -1.0
     for k in range(3):
         address, size = workspace.kkt, workspace.n
         if k > 0:
@@ -55,16 +43,16 @@ def refactor(workspace: Any, c_q: float, c_v: float) -> int:
             return SINGULAR
     _measure_sensitivity(workspace)
     _measure_condition(workspace)
-    ivec(workspace.counters, COUNTERS_SIZE)[FACTORIZATIONS] += 1
-    rate[FACTOR_AGE], rate[FACTOR_CV] = 0.0, c_v
-    rate[OUTER_RATE], rate[LAST_OUTER], rate[LAST_INNER] = 1.0, 0.0, 0.0
+    counters_at(workspace.counters).factorizations += 1
+    rate.factor_age, rate.factor_cv = 0.0, c_v
+    rate.outer_rate, rate.last_outer, rate.last_inner = 1.0, 0.0, 0.0
     return OK
 
 
 @internal
 def _measure_sensitivity(workspace: Any) -> None:
     """How much the dependent coordinates move (scaled) for one move of all independent ones: |Phi_qd^-1 Phi_qi x|."""
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     if workspace.m_act == 0 or workspace.m_act == workspace.n:
         return
     scale = vec(workspace.scale, workspace.n)
@@ -86,9 +74,9 @@ def _measure_sensitivity(workspace: Any) -> None:
     largest = 0.0
     for i in range(workspace.m_act):
         largest = max(largest, abs(rhs[i]) / scale[dependent[i]])
-    rate[SENSITIVITY] = largest
-    if rate[FIRST_SENSITIVITY] < 0.0:
-        rate[FIRST_SENSITIVITY] = largest
+    rate.sensitivity = largest
+    if rate.first_sensitivity < 0.0:
+        rate.first_sensitivity = largest
 
 
 @internal
@@ -118,7 +106,7 @@ def _measure_condition(workspace: Any) -> None:
     """
     if workspace.m_act == 0:
         return
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     rhs = vec(workspace.rhs, workspace.n + workspace.m_act)
     probe, scale = vec(workspace.probe, workspace.m_act), vec(workspace.scale, workspace.n)
     for i in range(workspace.n):
@@ -129,15 +117,15 @@ def _measure_condition(workspace: Any) -> None:
     largest = 0.0
     for i in range(workspace.n):
         largest = max(largest, abs(rhs[i]) / scale[i])
-    least = rate[LEAST_CONDITION]
+    least = rate.least_condition
     if largest > CHOICE_GROWTH * least > 0.0 and _dependent_move(workspace) <= least:
         largest = least
-    rate[CONDITION] = largest
-    rate[WORST_CONDITION] = max(rate[WORST_CONDITION], largest)
+    rate.condition = largest
+    rate.worst_condition = max(rate.worst_condition, largest)
     if least > CHOICE_GROWTH * largest > CHOICE_GROWTH**2 * _dependent_move(workspace):
         # the first ones of a structure, at guesses far away, were such moves: what they were is no growth
-        rate[WORST_CONDITION] = largest
-    if rate[CHOICE_CONDITION] == 0.0 or CHOICE_GROWTH * largest < rate[CHOICE_CONDITION]:
-        rate[CHOICE_CONDITION] = largest
-    if rate[LEAST_CONDITION] == 0.0 or largest < rate[LEAST_CONDITION]:
-        rate[LEAST_CONDITION] = largest
+        rate.worst_condition = largest
+    if rate.choice_condition == 0.0 or CHOICE_GROWTH * largest < rate.choice_condition:
+        rate.choice_condition = largest
+    if rate.least_condition == 0.0 or largest < rate.least_condition:
+        rate.least_condition = largest

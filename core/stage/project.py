@@ -9,14 +9,11 @@ from ..assembly.levels import position_level, rate_level
 from ..assembly.projection import correct_least
 from ..assembly.redundant_reactions import factor_equations
 from ..compiled.jit import internal
-from ..compiled.views import vec
 from ..state.workspace_records import (
-    CONTROL_SIZE,
     INNER_DIVERGED,
     OK,
-    POSITION_TOLERANCE,
     REANALYZE,
-    VELOCITY_TOLERANCE,
+    control_at,
 )
 from .accelerations import solve_accelerations
 
@@ -43,16 +40,16 @@ def _project_level(workspace: Any, residual_address: int, x_address: int, tolera
 @internal
 def project_motion(workspace: Any) -> int:
     """Coordinates and velocities of the current point onto the constraints."""
-    control = vec(workspace.control, CONTROL_SIZE)
+    control = control_at(workspace.control)
     evaluate_residuals(workspace)
     if workspace.m_act > 0:
         evaluate_tangent(workspace, 0.0, 0.0)
         if factor_equations(workspace, workspace.kkt_query) != 0:
             return REANALYZE
-        status = _project_level(workspace, workspace.phi, workspace.q, control[POSITION_TOLERANCE])
+        status = _project_level(workspace, workspace.phi, workspace.q, control.position_tolerance)
         if status != OK:
             return status
-        return _project_level(workspace, workspace.phid, workspace.v, control[VELOCITY_TOLERANCE])
+        return _project_level(workspace, workspace.phid, workspace.v, control.velocity_tolerance)
     return OK
 
 

@@ -13,25 +13,15 @@ import numpy as np
 
 from ..assembly.evaluate import evaluate_residuals
 from ..compiled.jit import internal
-from ..compiled.views import ivec, mat, vec
+from ..compiled.views import mat, vec
 from ..state.workspace_records import (
-    ACCELERATION,
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FAILED_NORM,
-    INNER,
-    LAST_INNER,
-    LAST_OUTER,
-    MAX_OUTER,
-    NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
-    OUTER,
     OUTER_DIVERGED,
-    OUTER_RATE,
     OUTER_SLOW,
-    RATE_SIZE,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .inner import inner_loop
 from .matrices import refactor
@@ -133,14 +123,14 @@ def _mix(workspace: Any, k: int, depth: int) -> None:
 def solve_simple_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
     """Solve one stage by the fixed point, from the predicted a, lambda in the workspace."""
     control, counters, rate = (
-        vec(workspace.control, CONTROL_SIZE), ivec(workspace.counters, COUNTERS_SIZE), vec(workspace.rate, RATE_SIZE),
+        control_at(workspace.control), counters_at(workspace.counters), convergence_at(workspace.rate),
     )  # fmt: skip
     begin_stage(workspace, t, c_q, c_v)
-    tolerance, slack, acceleration = control[NEWTON_TOLERANCE], inner_slack(control), control[ACCELERATION]
-    start_inner = counters[INNER]
+    tolerance, slack, acceleration = control.newton_tolerance, inner_slack(control), control.acceleration
+    start_inner = counters.inner
     previous, first, relaxation = np.inf, 0.0, 1.0
     status = OUTER_SLOW
-    for k in range(int(control[MAX_OUTER])):
+    for k in range(int(control.max_outer)):
         # the first matrices come from the predicted point, which may miss the constraints a little
         if k == 0:
             status = refactor(workspace, 0.0, 0.0)
@@ -154,7 +144,7 @@ def solve_simple_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
             if status != OK:
                 return status
         solve_increment(workspace, workspace.kkt)
-        counters[OUTER] += 1
+        counters.outer += 1
         norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
@@ -164,7 +154,7 @@ def solve_simple_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
         elif norm > tolerance:
             plain = acceleration == 0.0
             if (plain and contraction > 0.9) or norm > _HOPELESS * first:
-                rate[FAILED_NORM] = contraction
+                rate.failed_norm = contraction
                 return OUTER_DIVERGED
         if acceleration == AITKEN:
             relaxation = _relax(workspace, k, relaxation)
@@ -173,20 +163,20 @@ def solve_simple_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
         add_increment(workspace, c_q, c_v)
         evaluate_residuals(workspace)
         if k > 0:
-            rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
-            known = min(rate[OUTER_RATE], 0.99)
+            rate.outer_rate = max(0.3 * rate.outer_rate, contraction)
+            known = min(rate.outer_rate, 0.99)
         else:
             known = 0.5
         previous = norm
         if norm * known / (1.0 - known) <= tolerance:
             status = OK
-            rate[LAST_OUTER] = k + 1
+            rate.last_outer = k + 1
             break
-        rate[FAILED_NORM] = contraction
+        rate.failed_norm = contraction
         status = OUTER_SLOW
     if status != OK:
         return status
     status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0)
-    rate[LAST_INNER] = counters[INNER] - start_inner
-    rate[FACTOR_AGE] = -1.0
+    rate.last_inner = counters.inner - start_inner
+    rate.factor_age = -1.0
     return status

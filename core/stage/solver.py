@@ -20,28 +20,13 @@ from ..compiled.jit import inlined, internal
 from ..compiled.views import ivec, vec
 from ..linalg import lu_at, solve
 from ..state.workspace_records import (
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    FACTOR_AGE,
-    FACTOR_CV,
-    FAILED_NORM,
-    INNER,
-    IS_LINEAR,
-    LAST_INNER,
-    LAST_OUTER,
-    MAX_OUTER,
-    MOST_SLACK,
-    NEWTON_TOLERANCE,
     NOT_FINITE,
     OK,
-    OUTER,
     OUTER_DIVERGED,
-    OUTER_RATE,
     OUTER_SLOW,
-    POSITION_TOLERANCE,
-    RATE_SIZE,
-    RTOL,
-    STAGES,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .corotating import add_in_frame
 from .inner import inner_loop
@@ -103,7 +88,7 @@ def evaluate_prediction(workspace: Any, c_q: float, c_v: float) -> None:
 def begin_stage(workspace: Any, t: float, c_q: float, c_v: float) -> None:
     """The time of a stage, and the residuals at the point that its formula makes of the predicted accelerations."""
     vec(workspace.t, 1)[0] = t
-    ivec(workspace.counters, COUNTERS_SIZE)[STAGES] += 1
+    counters_at(workspace.counters).stages += 1
     evaluate_prediction(workspace, c_q, c_v)
 
 
@@ -111,18 +96,18 @@ def begin_stage(workspace: Any, t: float, c_q: float, c_v: float) -> None:
 def prepare_attempt(workspace: Any, c_q: float, c_v: float, attempt: int, most_outer: int) -> int:
     """Matrices for attempt 0 or 1 at a stage: first the old ones, unless they have become slow (more than `most_outer`
     iterations at the last stage) or too old; then new ones at the predicted point. FACTOR_AGE is 1 if they are new."""
-    rate = vec(workspace.rate, RATE_SIZE)
+    rate = convergence_at(workspace.rate)
     if attempt > 0:
         evaluate_prediction(workspace, c_q, c_v)
     most_inner = MOST_INNER if workspace.part_first == 0 else MOST_CHEAP_INNER
-    slow = rate[LAST_OUTER] > most_outer or rate[LAST_INNER] > most_inner
+    slow = rate.last_outer > most_outer or rate.last_inner > most_inner
     # in turning frames coordinates are predicted so well that their increments tell nothing of the matrices, which turn
     # with the bodies: old ones would leave multipliers wrong, unseen
-    if attempt > 0 or slow or workspace.n_spins > 0 or not 0.0 <= rate[FACTOR_AGE] < OLDEST:
+    if attempt > 0 or slow or workspace.n_spins > 0 or not 0.0 <= rate.factor_age < OLDEST:
         status = refactor(workspace, c_q, c_v)
         if status != OK:
             return status
-    rate[FACTOR_AGE] += 1.0
+    rate.factor_age += 1.0
     return OK
 
 
@@ -156,17 +141,17 @@ def add_increment(workspace: Any, c_q: float, c_v: float) -> None:
 def inner_slack(control: Any) -> float:
     """By how much the inner loop may be looser while the outer one moves: before that has converged, the constraints
     need to hold only a hundred times better than it does, or as well as the formula asks for."""
-    enough = 0.01 * control[NEWTON_TOLERANCE] * control[RTOL] / control[POSITION_TOLERANCE]
-    return max(1.0, min(control[MOST_SLACK], enough))
+    enough = 0.01 * control.newton_tolerance * control.rtol / control.position_tolerance
+    return max(1.0, min(control.most_slack, enough))
 
 
 @inlined
 def judge_contraction(rate: Any, contraction: float, wanting: bool, renewed: int) -> int:
     """OK, OUTER_DIVERGED, or OUTER_SLOW: the matrix of the predicted point is not good enough, that of the present one
     is. `wanting`: the tolerance is not met; `renewed`: how often the matrix has been renewed in this iteration."""
-    rate[OUTER_RATE] = max(0.3 * rate[OUTER_RATE], contraction)
+    rate.outer_rate = max(0.3 * rate.outer_rate, contraction)
     if contraction > 0.9 and wanting and (renewed > 0 or contraction > 2.0):
-        rate[FAILED_NORM] = contraction
+        rate.failed_norm = contraction
         return OUTER_DIVERGED
     return OUTER_SLOW if contraction > SLOW and wanting and renewed < 2 else OK
 
@@ -183,7 +168,7 @@ def solve_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
         status = prepare_attempt(workspace, c_q, c_v, attempt, MOST_OUTER)
         if status != OK:
             return status
-        fresh = vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] == 1.0
+        fresh = convergence_at(workspace.rate).factor_age == 1.0
         status = _iterate(workspace, c_q, c_v)
         if status == OK or fresh:
             break
@@ -193,29 +178,29 @@ def solve_stage(workspace: Any, t: float, c_q: float, c_v: float) -> int:
 @internal
 def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
     """The outer loop."""
-    control = vec(workspace.control, CONTROL_SIZE)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
-    rate = vec(workspace.rate, RATE_SIZE)
-    tolerance = control[NEWTON_TOLERANCE]
-    start_inner = counters[INNER]
+    control = control_at(workspace.control)
+    counters = counters_at(workspace.counters)
+    rate = convergence_at(workspace.rate)
+    tolerance = control.newton_tolerance
+    start_inner = counters.inner
     previous = np.inf
     renewed = 0
     slack = inner_slack(control)
     status = OUTER_SLOW
-    for k in range(int(control[MAX_OUTER])):
+    for k in range(int(control.max_outer)):
         status = inner_loop(workspace, workspace.lu_d, slack, np.inf, k > 0)
         if status != OK:
             return status
         solve_increment(workspace, workspace.kkt)
-        counters[OUTER] += 1
+        counters.outer += 1
         norm = increment_norm(workspace, c_q, c_v)
         if not np.isfinite(norm):
             return NOT_FINITE
         add_increment(workspace, c_q, c_v)
         evaluate_constraints(workspace)
-        if control[IS_LINEAR] > 0.0 and c_v == rate[FACTOR_CV] and renewed == 0 and k == 0:
+        if control.is_linear > 0.0 and c_v == rate.factor_cv and renewed == 0 and k == 0:
             # the matrices are those of the equations: a second increment would be rounding
-            rate[LAST_OUTER], status = 1.0, OK
+            rate.last_outer, status = 1.0, OK
             break
         if k > 0:
             status = judge_contraction(rate, norm / previous, norm > tolerance, renewed)
@@ -225,16 +210,16 @@ def _iterate(workspace: Any, c_q: float, c_v: float) -> int:
             if status != OK:
                 return status
         previous = norm
-        known = min(max(rate[OUTER_RATE], LEAST_RATE), 0.99)
+        known = min(max(rate.outer_rate, LEAST_RATE), 0.99)
         if norm * known / (1.0 - known) <= tolerance:
             status = OK
-            rate[LAST_OUTER] = k + 1
+            rate.last_outer = k + 1
             if k == 0:
-                rate[OUTER_RATE] = known * RATE_GROWTH
+                rate.outer_rate = known * RATE_GROWTH
             break
         status = OUTER_SLOW
     if status != OK:
         return status
     status = inner_loop(workspace, workspace.lu_d, 1.0, 1.0, True)
-    rate[LAST_INNER] = counters[INNER] - start_inner
+    rate.last_inner = counters.inner - start_inner
     return status

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..compiled import types
 from ..compiled.jit import caller, record_view
+from ..compiled.records import fields_of
 from .method_records import METHOD_TYPE
 from .workspace_records import WORKSPACE_TYPE
 
@@ -60,33 +61,41 @@ call_accelerations = caller(ACCELERATIONS_SIGNATURE)
 WATCH = 5
 """Columns of `watch`: gap, rate and acceleration of a contact; rate and acceleration of its sliding distance."""
 
-# columns of `clock`
-STEP_SIZE = 0  # proposed next step
-STOP_TIME = 1
-MAX_STEP = 2
-FIXED_STEP = 3  # 0: error controlled
-TRIAL_STEP = 4  # step of the last trial (an event or a failure)
-TARGET_TIME = 5  # `run` returns once it is reached; a step may go beyond it
-BREAK_TIME = 6  # next time at which a force or a driver's rate jumps
-LARGEST_GROWTH = 7  # largest factor by which a step may grow
-HOLD = 8  # equal steps that a multistep formula takes between two growths
-EQUAL_STEPS = 9  # equal steps taken since the last change
-EAGER = 10  # 1: `run` returns when an outer loop fails, so that another can take over
-PREVIOUS_NORM = 11  # of one-step formulas: error norm of the last accepted step; 0: there is none
-PREVIOUS_RATIO = 12  # and by how much the step changed after it
-B1, B2, A2 = 13, 14, 15  # coefficients of the step-size controller
-REJECTED_HERE = 16  # trials that failed since the last accepted step
-WINDOW_START, WINDOW_COUNT = 17, 18  # since when instants with events are counted, and how many there were
-CROWDED = 19  # 1: the last of these windows was next to no time (`events/zeno.py`)
-# while instants crowd (`events/zeno.py`): the size of the steps of impulses, 0: none; those that are left and how
-# many there were to be at first, since when no contact has come or gone; where the last began, and where the last of a
-# row of them ended
-PUSH_STEP, PUSHES_LEFT, PUSHES, CALM, PUSHED_FROM, PUSHED_UNTIL = range(20, 26)
-REPAIRED_AT = 26  # s: the newest row for which a failed step has had a new partition; -inf: none
-# of the division of a fixed step (`recovery/step_division.py`): how often it has been halved, 0: it is whole; steps in
-# it that have failed; where it ends, and where its present parts grow again, s; how many steps have been divided so far
-HALVINGS, FAILURES, DIVIDED_UNTIL, PARTS_UNTIL, DIVIDED_STEPS = range(27, 32)
-CLOCK_SIZE = 32
+CLOCK = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "step_size",                        # proposed next step
+            "stop_time", "max_step",
+            "fixed_step",                       # 0: error controlled
+            "trial_step",                       # step of the last trial (an event or a failure)
+            "target_time",                      # `run` returns once it is reached; a step may go beyond it
+            "break_time",                       # next time at which a force or a driver's rate jumps
+            "largest_growth",                   # largest factor by which a step may grow
+            "hold",                             # equal steps that a multistep formula takes between two growths
+            "equal_steps",                      # equal steps taken since the last change
+            "eager",                            # 1: `run` returns when an outer loop fails, so that another takes over
+            # of one-step formulas: error norm of the last accepted step, 0: there is none; by how much it changed then
+            "previous_norm", "previous_ratio",
+            "b1", "b2", "a2",                   # coefficients of the step-size controller
+            "rejected_here",                    # trials that failed since the last accepted step
+            "window_start", "window_count",     # since when instants with events are counted, how many there were
+            "crowded",                          # 1: the last of these windows was next to no time (`events/zeno.py`)
+            # while instants crowd (`events/zeno.py`): the size of the steps of impulses, 0: none; those that are left
+            # and how many there were to be at first, since when no contact has come or gone; where the last began, and
+            # where the last of a row of them ended
+            "push_step", "pushes_left", "pushes", "calm", "pushed_from", "pushed_until",
+            "repaired_at",                      # s: newest row at which a failed step had a new partition; -inf: none
+            # of the division of a fixed step (`recovery/step_division.py`): how often it has been halved, 0: it is
+            # whole; steps in it that have failed; where it ends, and where its present parts grow again, s; how many
+            # steps have been divided so far
+            "halvings", "failures", "divided_until", "parts_until", "divided_steps",
+        )
+    ]
+)  # fmt: skip
+"""Step sizes, and what the time loop remembers: the array `clock`, a part of the state."""
+CLOCK_SIZE = CLOCK.itemsize // 8
+clock_at, clock_of = record_view(types.from_dtype(CLOCK)), fields_of(CLOCK)
 
 # columns of a per-step record
 LOG_COLUMNS = ("t", "h", "error", "k", "rejected", "outer", "inner", "factorizations", "evaluations", "krylov")
@@ -107,10 +116,10 @@ JAM = 111  # the newest step went over a place where sliding contacts jam
 WANTED = 112  # something has to be built before pending events can be settled
 FAILED = 113  # pending events cannot be settled
 DIVIDES = 114  # a fixed step is divided from here on: whoever wants to may say so, and go on
-GOES_BY_IMPULSES = 115  # the same of steps of impulses, CAUSE says why
+GOES_BY_IMPULSES = 115  # the same of steps of impulses, `cause` says why
 LAST_RESORT = 116  # as NEAR_SINGULAR, once all else has failed
 FALL_BACK = 117  # another outer loop is to take over
-UNREPAIRED = 118  # the constraints cannot be partitioned: STATUS
+UNREPAIRED = 118  # the constraints cannot be partitioned: `status`
 
 DRIVE = np.dtype(
     [
@@ -151,22 +160,29 @@ call_locate = caller(LOCATE_SIGNATURE)
 RECOVER_SIGNATURE = types.int64(DRIVE_TYPE, types.int64)
 call_recover = caller(RECOVER_SIGNATURE)
 
-# columns of `goals`, s
-GOAL, LAST_STOP, HANDLED_AT = range(3)
-PASSED = 3  # the breakpoint that is due
-GOALS_SIZE = 4
-# columns of `counts`
-BUDGET = 0  # steps and instants with events that `drive` may take
-HANDLED = 1  # instants with events so far
-HERE = 2  # of these at the time HANDLED_AT
-EVENTS = 3  # events in the ring
-STATUS = 4  # of the settling, or the repair, that has ended a run: `events/records.py`
-# of `recovery/policy.py`, while it waits for what it has asked for, each 0 else: what has failed, what is being tried,
-# how often, and the answer
-CAUSE, REMEDY, ATTEMPTS, ANSWER = range(5, 9)
-COUNTS_SIZE = 9
+GOALS = np.dtype([(name, np.float64) for name in ("goal", "last_stop", "handled_at", "passed")])
+"""Where to go, s; the last: the breakpoint that is due."""
+
+COUNTS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "budget",                           # steps and instants with events that `drive` may take
+            "handled",                          # instants with events so far
+            "here",                             # of these at the time `handled_at`
+            "events",                           # events in the ring
+            "status",                           # of the settling, or repair, that has ended a run: `events/records.py`
+            # of `recovery/policy.py`, while it waits for what it has asked for, each 0 else: what has failed, what is
+            # being tried, how often, and the answer
+            "cause", "remedy", "attempts", "answer",
+        )
+    ]
+)  # fmt: skip
+GOALS_SIZE, COUNTS_SIZE = GOALS.itemsize // 8, COUNTS.itemsize // 8
+goals_at, counts_at = (record_view(types.from_dtype(x)) for x in (GOALS, COUNTS))
+goals_of, counts_of = fields_of(GOALS), fields_of(COUNTS)
 UNANSWERED, NOT_DONE, DONE, OTHER_ROWS = range(4)
-"""Answers; the last: it is done, and other redundant rows are left out now."""
+"""Of `answer`; the last: it is done, and other redundant rows are left out now."""
 
 FOUND_SIZE = 7
 FORCE_NUMBERS = 4

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..compiled import types
 from ..compiled.jit import caller, record_view
+from ..compiled.records import fields_of
 from ..linalg.record import OK as OK
 from ..linalg.record import WANT_ROOM as WANT_ROOM  # also what building a structure returns
 
@@ -147,53 +148,74 @@ SPIN_SIZE = 120
 SERIES, SCRATCH_SIZE = 64, 414
 """Where in `scratch` the series of a free rotation begins (`stage/free_rotation.py`), and how many numbers it has."""
 
-# columns of `control` (float64)
-NEWTON_TOLERANCE = 0
-POSITION_TOLERANCE = 1
-VELOCITY_TOLERANCE = 2
-ACCELERATION_TOLERANCE = 3
-MAX_OUTER = 4
-MAX_INNER = 5
-ACCELERATION = 6  # of the simple iteration: 0 none, 1 Aitken, m + 1 Anderson of depth m
-RTOL = 7
-ATOL = 8  # of the work accounts, relative to their scales
-STAGE_ALPHA = 9  # parameters of the stage functions of comparison methods
-STAGE_BETA = 10
-OUTER_LOOP = 11  # 0: Newton, 1: the fixed point, 2: another
-MOST_CONDITION = 12  # growth of the condition of the constraints beyond which a position counts as nearly singular
-EXACTNESS = 13  # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
-IS_LINEAR = 14  # 1: the equations are linear, so that one iteration with their own matrices solves them
-RATE_SCALE = 15  # inverse of the model's own time, 1/s
-ENERGY_SCALE = 16  # work of its forces along its lengths, J
-STIFFNESS_SCALE = 17  # square of the rate of its fastest vibration, 1/s^2
-MOST_SLACK = 18  # how many times looser the inner loop may be, at most, while the outer one moves
-CONTROL_SIZE = 19
+# The records below are parts of the workspace's arrays; all of their fields are numbers of 8 bytes.
 
-# columns of `rate` (float64): what the convergence tests remember; part of the state
-OUTER_RATE = 0
-FACTOR_AGE = 1  # stages since the last factorisation; < 0: there is none
-FACTOR_CV = 2  # c_v of that factorisation, for formulas that solve coupled stages themselves
-LAST_OUTER = 3
-LAST_INNER = 4
-FAILED_NORM = 5
-SENSITIVITY = 6  # |dq_d/dq_i| at the last factorisation, scaled
-FIRST_SENSITIVITY = 7  # the same when the partition was chosen; < 0: not known yet
-CORRECTION = 8  # of the stabilised index-2 form: |h M^-1 Phi_q^T mu| of the last stage, scaled
-CONDITION = 9  # of the constraints at the last factorisation: size of the motion that a unit violation asks for
-LEAST_CONDITION = 10  # the least of them in this structure; 0: none yet
-WORST_CONDITION = 11  # the largest of them in the present step
-CHOICE_CONDITION = 12  # when the redundant rows were last chosen, or the least since; 0: not known yet
-LOOKED_CONDITION = 13  # up to here it has been looked for a singular position in vain
-RATE_SIZE = 14
+CONTROL = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "newton_tolerance", "position_tolerance", "velocity_tolerance", "acceleration_tolerance",
+            "max_outer", "max_inner",
+            "acceleration",                # of the simple iteration: 0 none, 1 Aitken, m + 1 Anderson of depth m
+            "rtol", "atol",                # the latter of the work accounts, relative to their scales
+            "stage_alpha", "stage_beta",   # parameters of the stage functions of comparison methods
+            "outer_loop",                  # 0: Newton, 1: the fixed point, 2: another
+            # growth of the condition of the constraints beyond which a position counts as nearly singular
+            "most_condition",
+            # at most 1: how much more exactly than they must the constraints are solved, if rounding allows it
+            "exactness",
+            "is_linear",                   # 1: linear equations: one iteration with their own matrices solves them
+            "rate_scale",                  # inverse of the model's own time, 1/s
+            "energy_scale",                # work of its forces along its lengths, J
+            "stiffness_scale",             # square of the rate of its fastest vibration, 1/s^2
+            "most_slack",                  # how many times looser the inner loop may be while the outer one moves
+        )
+    ]
+)  # fmt: skip
+"""Tolerances, limits and scales of the solver, which a run does not change: the array `control`."""
 
-# columns of `counters` (int64)
-STEPS, REJECTED, OUTER, INNER, FACTORIZATIONS, PARTITIONS, EVALUATIONS, STAGES, ANALYSES, KRYLOV = range(10)
-OF_IMPULSES = 10  # steps of impulses, which are among the steps
-IMPACTS_IN_ROUNDS = 11  # see `events/impact_retries.py`
-UNSHARED_LOADS = 12  # instants at which contacts that repeat each other have got other than the least forces
-LEFT_APPROACHES = 13  # instants that have left an approach (`events/residual_approach.py`)
-UNFINISHED_SWEEPS = 14  # steps of impulses whose sweeps have ended at their limit
-COUNTERS_SIZE = 15
+CONVERGENCE = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "outer_rate",
+            "factor_age",                  # stages since the last factorisation; < 0: there is none
+            "factor_cv",                   # its c_v, for formulas that solve coupled stages themselves
+            "last_outer", "last_inner", "failed_norm",
+            "sensitivity",                 # |dq_d/dq_i| at the last factorisation, scaled
+            "first_sensitivity",           # the same when the partition was chosen; < 0: not known yet
+            "correction",                  # |h M^-1 Phi_q^T mu| of the last stage of the stabilised index-2 form
+            # of the constraints at the last factorisation: size of the motion that a unit violation asks for; the least
+            # of them in this structure, 0: none yet; the largest of them in the present step; that when the redundant
+            # rows were last chosen, or the least since, 0: not known yet; and up to which one a singular position has
+            # been looked for in vain
+            "condition", "least_condition", "worst_condition", "choice_condition", "looked_condition",
+        )
+    ]
+)  # fmt: skip
+"""What the convergence tests remember, a part of the state: the array `rate`."""
+
+COUNTERS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "steps", "rejected", "outer", "inner", "factorizations", "partitions", "evaluations", "stages", "analyses",
+            "krylov",
+            "of_impulses",                 # steps of impulses, which are among the steps
+            "impacts_in_rounds",           # see `events/impact_retries.py`
+            # instants at which contacts that repeat each other have got other than the least forces
+            "unshared_loads",
+            "left_approaches",             # instants that have left an approach (`events/residual_approach.py`)
+            "unfinished_sweeps",           # steps of impulses whose sweeps have ended at their limit
+        )
+    ]
+)  # fmt: skip
+"""What a run has counted, which decides nothing: the array `counters`."""
+
+CONTROL_SIZE, RATE_SIZE, COUNTERS_SIZE = (x.itemsize // 8 for x in (CONTROL, CONVERGENCE, COUNTERS))
+control_at, convergence_at, counters_at = (record_view(types.from_dtype(x)) for x in (CONTROL, CONVERGENCE, COUNTERS))
+control_of, convergence_of, counters_of = map(fields_of, (CONTROL, CONVERGENCE, COUNTERS))
+"""control_of(array): the same for Python."""
 
 # status of stages, steps and of the loop
 OUTER_DIVERGED = 1

@@ -24,36 +24,17 @@ from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
 from ..state.method_records import METHOD_TYPE
 from ..state.run_records import (
-    BREAK_TIME,
-    BUDGET,
     CHUNK,
-    CLOCK_SIZE,
-    COUNTS_SIZE,
-    DIVIDED_UNTIL,
     DRIVE_TYPE,
     DUE,
     EVENT,
     EVENTS_FULL,
     FAILED,
-    GOAL,
-    GOALS_SIZE,
-    HALVINGS,
-    HANDLED,
     JAM,
-    LAST_STOP,
     LOOP_TYPE,
-    PARTS_UNTIL,
-    PASSED,
-    PUSH_STEP,
     REACHED,
-    REMEDY,
     REPARTITION,
     SETTLE,
-    STATUS,
-    STEP_SIZE,
-    STOP_TIME,
-    TARGET_TIME,
-    TRIAL_STEP,
     UNLOCATED,
     WANTED,
     call_find_events,
@@ -62,8 +43,16 @@ from ..state.run_records import (
     call_run,
     call_settle,
     call_trial,
+    clock_at,
+    counts_at,
+    goals_at,
 )
-from ..state.workspace_records import COUNTERS_SIZE, FACTOR_AGE, OK, RATE_SIZE, STEPS, WORKSPACE_TYPE
+from ..state.workspace_records import (
+    OK,
+    WORKSPACE_TYPE,
+    convergence_at,
+    counters_at,
+)
 from .sliding import any_slides
 from .time_stepping import make_push_step
 
@@ -76,38 +65,38 @@ workspace_at, method_at, loop_at, drive_at = map(record_view, (WORKSPACE_TYPE, M
 @internal
 def _aim(drive: Any, method: Any, loop: Any) -> int:
     """Set the clock of the loop for the way to the goal; REACHED or DUE where there is no way to go."""
-    goals, clock = vec(drive.goals, GOALS_SIZE), vec(loop.clock, CLOCK_SIZE)
+    goals, clock = goals_at(drive.goals), clock_at(loop.clock)
     breakpoints = vec(drive.breakpoints, drive.n_breakpoints)
-    now, goal, last_stop, ahead = history_time(method, 0), goals[GOAL], goals[LAST_STOP], np.inf
-    if clock[HALVINGS] > 0.0:
+    now, goal, last_stop, ahead = history_time(method, 0), goals.goal, goals.last_stop, np.inf
+    if clock.halvings > 0.0:
         # a fixed step that is divided is made to its end
-        goal, last_stop = max(goal, clock[DIVIDED_UNTIL]), min(last_stop, clock[PARTS_UNTIL])
+        goal, last_stop = max(goal, clock.divided_until), min(last_stop, clock.parts_until)
     if now >= goal:
         return REACHED
     for i in range(drive.n_breakpoints):
         if now < breakpoints[i] < ahead:
             ahead = breakpoints[i]
     # steps end just before a breakpoint, so that they see what holds to the left of it
-    last, goals[PASSED] = np.nextafter(ahead, -np.inf), ahead
+    last, goals.passed = np.nextafter(ahead, -np.inf), ahead
     if last - now <= NO_STEP * abs(now):
         return DUE
     if goal - now <= NO_STEP * abs(goal):
         return REACHED
-    clock[BREAK_TIME], clock[STOP_TIME], clock[TARGET_TIME] = ahead, min(last_stop, last), goal
-    return REACHED if clock[STOP_TIME] - now <= NO_STEP * abs(now) else OK
+    clock.break_time, clock.stop_time, clock.target_time = ahead, min(last_stop, last), goal
+    return REACHED if clock.stop_time - now <= NO_STEP * abs(now) else OK
 
 
 @internal
 def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> int:
     """Steps and events up to the goal; `hold`: only up to where events are pending. Where `recover` has asked for
     something, its answer counts first."""
-    counts = ivec(drive.counts, COUNTS_SIZE)
-    last = ivec(workspace.counters, COUNTERS_SIZE)[STEPS] + counts[HANDLED] + counts[BUDGET]
-    code = OK if counts[REMEDY] == 0 else call_recover(drive.recover, drive, OK)
+    counts = counts_at(drive.counts)
+    last = counters_at(workspace.counters).steps + counts.handled + counts.budget
+    code = OK if counts.remedy == 0 else call_recover(drive.recover, drive, OK)
     while code == OK:
         loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
-        clock = vec(loop.clock, CLOCK_SIZE)
-        begin_watch(workspace, method, loop, max(clock[STEP_SIZE], clock[PUSH_STEP]))
+        clock = clock_at(loop.clock)
+        begin_watch(workspace, method, loop, max(clock.step_size, clock.push_step))
         code = _drive_on(drive, workspace, method, loop, hold, last)
         loop.may_sleep = 0
         # whoever builds what is wanted does not look at gaps, and comes back at once
@@ -120,19 +109,19 @@ def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> 
 @internal
 def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool, last: int) -> int:
     """Up to so many steps and instants in all as `last` says."""
-    counts, steps = ivec(drive.counts, COUNTS_SIZE), ivec(workspace.counters, COUNTERS_SIZE)
+    counts, steps = counts_at(drive.counts), counters_at(workspace.counters)
     side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
     while True:
         if is_due(drive, workspace):
             side = 0.0
             # which redundant rows are left out is for Python to look at, at every instant; steps of impulses take those
             # that a new partition leaves out
-            beyond = history_time(method, 0) > vec(drive.goals, GOALS_SIZE)[GOAL]
-            if (workspace.n_redundant > 0 or hold or beyond) and vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] == 0.0:
+            beyond = history_time(method, 0) > goals_at(drive.goals).goal
+            if (workspace.n_redundant > 0 or hold or beyond) and clock_at(loop.clock).push_step == 0.0:
                 return SETTLE
             status = call_settle(drive.settle, drive)
             if status != SETTLED:
-                counts[STATUS] = status
+                counts.status = status
                 return SETTLE if status == DECLINED else (WANTED if status <= WANT_MEMORY else FAILED)
             continue
         code = _aim(drive, method, loop)
@@ -142,15 +131,15 @@ def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool, la
                 return EVENTS_FULL
             status = call_settle(drive.pass_breakpoint, drive)
             if status != SETTLED:
-                counts[STATUS] = status
+                counts.status = status
                 return WANTED if status <= WANT_MEMORY else FAILED
             continue
         if code != OK:
             return code
-        left = last - steps[STEPS] - counts[HANDLED]
+        left = last - steps.steps - counts.handled
         if left <= 0:
             return CHUNK
-        if vec(loop.clock, CLOCK_SIZE)[PUSH_STEP] != 0.0 or only_impulses(loop):
+        if clock_at(loop.clock).push_step != 0.0 or only_impulses(loop):
             side, code = 0.0, call_settle(drive.push_step, drive)
             if code != OK:
                 return code
@@ -227,7 +216,7 @@ def push_step(drive: Any) -> int:
 
 @compiled
 def pass_breakpoint(drive: Any) -> int:
-    """Go on behind the breakpoint `PASSED` of the goals: a status of `events/records.py`."""
+    """Go on behind the breakpoint `passed` of the goals: a status of `events/records.py`."""
     workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
     return go_on_behind(drive, instant_at(drive.instant), workspace, method, loop)
 
@@ -259,7 +248,7 @@ def locate_now(drive: Any, again: bool) -> int:
     """`locate`, after `drive` has returned. `again`: the step of size TRIAL_STEP is made again first; UNLOCATED: it has
     no event any more. With any other code than OK nothing is accepted, and the newest row is the current point."""
     workspace, method, loop = workspace_at(drive.workspace), method_at(drive.method), loop_at(drive.loop)
-    status, h = OK, vec(loop.clock, CLOCK_SIZE)[TRIAL_STEP]
+    status, h = OK, clock_at(loop.clock).trial_step
     if again:
         recall(workspace, method, 0)
         status = call_trial(drive.trial, workspace, method, loop, h)
@@ -269,5 +258,5 @@ def locate_now(drive: Any, again: bool) -> int:
         status = locate(drive, workspace, method, loop)
     if status != OK:
         recall(workspace, method, 0)
-        vec(workspace.rate, RATE_SIZE)[FACTOR_AGE] = -1.0
+        convergence_at(workspace.rate).factor_age = -1.0
     return status

@@ -3,8 +3,9 @@
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import vec
-from ..state.run_records import A2, B1, B2, CLOCK_SIZE, EQUAL_STEPS, LARGEST_GROWTH, PREVIOUS_NORM, PREVIOUS_RATIO
+from ..state.run_records import (
+    clock_at,
+)
 
 SAFETY = 0.9
 MIN_FACTOR = 0.2
@@ -24,18 +25,18 @@ def step_factor(error: float, order: float, growth: float) -> float:
 def _controlled(clock: Any, error: float, order: float) -> float:
     """By how much a one-step formula's step changes, by the controller's coefficients."""
     if error <= 0.0:
-        clock[PREVIOUS_NORM] = 0.0
+        clock.previous_norm = 0.0
         return MAX_FACTOR
     exponent = 1.0 / (order + 1.0)
-    factor = (SAFETY ** (order + 1.0) / error) ** (clock[B1] * exponent)
-    if clock[PREVIOUS_NORM] > 0.0:
-        factor *= (SAFETY ** (order + 1.0) / clock[PREVIOUS_NORM]) ** (clock[B2] * exponent)
-        factor *= clock[PREVIOUS_RATIO] ** -clock[A2]
+    factor = (SAFETY ** (order + 1.0) / error) ** (clock.b1 * exponent)
+    if clock.previous_norm > 0.0:
+        factor *= (SAFETY ** (order + 1.0) / clock.previous_norm) ** (clock.b2 * exponent)
+        factor *= clock.previous_ratio**-clock.a2
     else:
         # without a past every controller is the elementary one
         factor = SAFETY * error**-exponent
     factor = min(MAX_FACTOR, max(MIN_FACTOR, factor))
-    clock[PREVIOUS_NORM], clock[PREVIOUS_RATIO] = error, factor
+    clock.previous_norm, clock.previous_ratio = error, factor
     return factor
 
 
@@ -47,13 +48,13 @@ def next_step(loop: Any, h: float, error: float, order: float, multistep: bool, 
     zero-stable for more than a few steps, growing by LARGEST_GROWTH between such runs of equal steps is (companion
     matrices of the variable-step formulas), and equal steps keep the coefficients.
     """
-    clock = vec(loop.clock, CLOCK_SIZE)
+    clock = clock_at(loop.clock)
     if not multistep:
-        clock[EQUAL_STEPS] = 0.0
+        clock.equal_steps = 0.0
         return h * _controlled(clock, error, order)
-    factor = step_factor(error, order, clock[LARGEST_GROWTH])
-    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock[LARGEST_GROWTH]) or clock[EQUAL_STEPS] < hold):
-        clock[EQUAL_STEPS] += 1.0
+    factor = step_factor(error, order, clock.largest_growth)
+    if factor >= 1.0 and ((factor < DEAD_BAND and factor < clock.largest_growth) or clock.equal_steps < hold):
+        clock.equal_steps += 1.0
         return h
-    clock[EQUAL_STEPS] = 0.0
+    clock.equal_steps = 0.0
     return h * factor

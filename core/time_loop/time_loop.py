@@ -18,58 +18,27 @@ from ..stage.inner import STRAINED
 from ..stage.matrices import CHOICE_GROWTH
 from ..state.method_records import CHOICE_SIZE, NEXT_K, NEXT_NORM, K
 from ..state.run_records import (
-    BREAK_TIME,
     CHUNK,
-    CLOCK_SIZE,
-    EAGER,
-    EQUAL_STEPS,
     EVENT,
     EVENTS_FULL,
-    FIXED_STEP,
-    HOLD,
     LOG_COLUMNS,
-    MAX_STEP,
     NEAR_SINGULAR,
-    PREVIOUS_NORM,
     REACHED,
-    REJECTED_HERE,
-    REPAIRED_AT,
     REPARTITION,
-    STEP_SIZE,
     STEP_TOO_SMALL,
-    STOP_TIME,
-    TARGET_TIME,
-    TRIAL_STEP,
     VIOLATED,
     call_find_events,
+    clock_at,
 )
 from ..state.workspace_records import (
-    ATOL,
-    CHOICE_CONDITION,
-    CONDITION,
-    CONTROL_SIZE,
-    COUNTERS_SIZE,
-    EVALUATIONS,
-    FACTOR_AGE,
-    FACTORIZATIONS,
-    FIRST_SENSITIVITY,
-    INNER,
-    KRYLOV,
-    LEAST_CONDITION,
-    LOOKED_CONDITION,
-    MOST_CONDITION,
     NOT_FINITE,
     OK,
-    OUTER,
     OUTER_DIVERGED,
     OUTER_SLOW,
-    RATE_SIZE,
     REANALYZE,
-    REJECTED,
-    RTOL,
-    SENSITIVITY,
-    STEPS,
-    WORST_CONDITION,
+    control_at,
+    convergence_at,
+    counters_at,
 )
 from .sample import write_sample
 from .step_bound import leap_of
@@ -84,7 +53,7 @@ LOOK_AGAIN = 5.0  # stages after which a factorisation may be repeated to look a
 @internal
 def set_weights(workspace: Any, method: Any) -> None:
     """Error weights atol + rtol |y| at the newest row (with fixed steps: of the outer loop's convergence test)."""
-    control = vec(workspace.control, CONTROL_SIZE)
+    control = control_at(workspace.control)
     row = history_row(workspace, method, 0)
     weight_q, weight_v = vec(workspace.weight_q, workspace.n_ext), vec(workspace.weight_v, workspace.n_ext)
     atol_q, atol_v = vec(workspace.atol_q, workspace.n_ext), vec(workspace.atol_v, workspace.n_ext)
@@ -95,14 +64,14 @@ def set_weights(workspace: Any, method: Any) -> None:
         level_v = max(level_v, abs(row[workspace.n_ext + i]) / scale[i])
     for i in range(workspace.n):
         # a coordinate near zero has the rounding of the large ones that it is tied to by the constraints
-        weight_q[i] = max(atol_q[i], COORDINATE_DIFFERENCES * level_q * scale[i]) + control[RTOL] * abs(row[i])
-        weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control[RTOL] * abs(
+        weight_q[i] = max(atol_q[i], COORDINATE_DIFFERENCES * level_q * scale[i]) + control.rtol * abs(row[i])
+        weight_v[i] = max(atol_v[i], COORDINATE_DIFFERENCES * level_v * scale[i]) + control.rtol * abs(
             row[workspace.n_ext + i]
         )
     # work accounts: relative to what they hold, or to the model's own energy (impulse)
     work_scale = vec(workspace.work_scale, workspace.n_ext)
     for i in range(workspace.n_ext - workspace.n_work, workspace.n_ext):
-        weight_v[i] = control[ATOL] * work_scale[i] + control[RTOL] * max(work_scale[i], abs(row[workspace.n_ext + i]))
+        weight_v[i] = control.atol * work_scale[i] + control.rtol * max(work_scale[i], abs(row[workspace.n_ext + i]))
 
 
 @compiled
@@ -131,15 +100,15 @@ def all_finite(workspace: Any) -> bool:
 def trial_step(workspace: Any, method: Any, loop: Any, h: float) -> int:
     """One step of size h from the newest row, not accepted yet; its end is the workspace's current point."""
     # a formula that looks ahead (extended BDF) must not see what lies behind a jump of a force
-    blind = loop.rows > 1 and history_time(method, 0) + 2.000001 * h > vec(loop.clock, CLOCK_SIZE)[BREAK_TIME]
+    blind = loop.rows > 1 and history_time(method, 0) + 2.000001 * h > clock_at(loop.clock).break_time
     starting = rows_available(method) < loop.rows or blind
     choice = vec(method.choice, CHOICE_SIZE)
     if loop.select != 0 and choice[K] >= loop.rows and rows_available(method) <= choice[K]:
         # a chosen order that the history cannot serve yet
         choice[K] = max(loop.rows, rows_available(method)) - 1.0
     set_weights(workspace, method)
-    rate = vec(workspace.rate, RATE_SIZE)
-    rate[WORST_CONDITION] = rate[CONDITION]
+    rate = convergence_at(workspace.rate)
+    rate.worst_condition = rate.condition
     status = step_in_frames(workspace, method, loop.starter if starting else loop.step, h)
     if status == OK and not all_finite(workspace):
         return NOT_FINITE
@@ -151,15 +120,15 @@ def _write_log(workspace: Any, method: Any, loop: Any) -> None:
     """A record of the step that has just been accepted; counters are running totals."""
     cursor = ivec(loop.log_cursor, 1)
     row = mat(loop.log, loop.log_capacity, LOG_SIZE)[cursor[0]]
-    counters, clock = ivec(workspace.counters, COUNTERS_SIZE), vec(loop.clock, CLOCK_SIZE)
+    counters, clock = counters_at(workspace.counters), clock_at(loop.clock)
     row[0] = history_time(method, 0)
     row[1] = row[0] - history_time(method, 1) if rows_available(method) > 1 else 0.0
     row[2] = vec(method.error, 2)[0]
     row[3] = vec(method.choice, CHOICE_SIZE)[K]
-    row[4] = clock[REJECTED_HERE]
-    row[5], row[6] = counters[OUTER], counters[INNER]
-    row[7], row[8], row[9] = counters[FACTORIZATIONS], counters[EVALUATIONS], counters[KRYLOV]
-    clock[REJECTED_HERE] = 0.0
+    row[4] = clock.rejected_here
+    row[5], row[6] = counters.outer, counters.inner
+    row[7], row[8], row[9] = counters.factorizations, counters.evaluations, counters.krylov
+    clock.rejected_here = 0.0
     cursor[0] += 1
 
 
@@ -170,12 +139,12 @@ def accept(workspace: Any, method: Any, loop: Any) -> None:
     remember(workspace, loop)
     doze(workspace, loop)
     go_on(workspace, loop)
-    ivec(workspace.counters, COUNTERS_SIZE)[STEPS] += 1
+    counters_at(workspace.counters).steps += 1
     # a way that begins anew from an earlier time may come to the same row again
-    vec(loop.clock, CLOCK_SIZE)[REPAIRED_AT] = -np.inf
+    clock_at(loop.clock).repaired_at = -np.inf
     if loop.log_capacity > 0:
         _write_log(workspace, method, loop)
-    if loop.capacity > 0 and ivec(workspace.counters, COUNTERS_SIZE)[STEPS] % loop.stride == 0:
+    if loop.capacity > 0 and counters_at(workspace.counters).steps % loop.stride == 0:
         cursor = ivec(loop.cursor, 1)
         look_at_all(workspace, loop)
         write_sample(workspace, mat(loop.samples, loop.capacity, loop.sample_length)[cursor[0]])
@@ -187,12 +156,12 @@ def partition_strained(workspace: Any) -> bool:
     """True if the dependent coordinates have become much more sensitive to the independent ones than they were when
     the partition was chosen: q_d(q_i) then has steep derivatives, which costs accuracy long before Phi_qd is singular.
     """
-    rate = vec(workspace.rate, RATE_SIZE)
-    if rate[SENSITIVITY] > STRAIN * max(rate[FIRST_SENSITIVITY], 1.0):
+    rate = convergence_at(workspace.rate)
+    if rate.sensitivity > STRAIN * max(rate.first_sensitivity, 1.0):
         return True
-    if workspace.n_redundant > 0 and rate[CONDITION] > CHOICE_GROWTH * rate[CHOICE_CONDITION] > 0.0:
+    if workspace.n_redundant > 0 and rate.condition > CHOICE_GROWTH * rate.choice_condition > 0.0:
         return True
-    if workspace.m_act == 0 or workspace.m_act == workspace.n or rate[FACTOR_AGE] < LOOK_AGAIN:
+    if workspace.m_act == 0 or workspace.m_act == workspace.n or rate.factor_age < LOOK_AGAIN:
         return False
     # the sensitivity is known from the last factorisation; dependent coordinates that now move faster than the
     # independent ones are a reason to look again: the next stage factors anew
@@ -204,7 +173,7 @@ def partition_strained(workspace: Any) -> bool:
     for k in range(workspace.m_act):
         of_dependent += (v[dependent[k]] / scale[dependent[k]]) ** 2
     if of_dependent * (workspace.n - workspace.m_act) > (everything - of_dependent) * workspace.m_act:
-        rate[FACTOR_AGE] = -1.0
+        rate.factor_age = -1.0
     return False
 
 
@@ -223,58 +192,58 @@ def violates_redundant(workspace: Any, relaxed: float) -> bool:
 @compiled_unlocked
 def run(workspace: Any, method: Any, loop: Any, chunk: int) -> int:
     """Up to `chunk` steps. Returns a code of `records` or the status of a step that cannot be made."""
-    clock = vec(loop.clock, CLOCK_SIZE)
-    counters = ivec(workspace.counters, COUNTERS_SIZE)
+    clock = clock_at(loop.clock)
+    counters = counters_at(workspace.counters)
     error = vec(method.error, 2)
-    control, rate = vec(workspace.control, CONTROL_SIZE), vec(workspace.rate, RATE_SIZE)
+    control, rate = control_at(workspace.control), convergence_at(workspace.rate)
     leave_bridge(method)
     for _ in range(chunk):
         t = history_time(method, 0)
-        stop = clock[STOP_TIME]
+        stop = clock.stop_time
         remaining = stop - t
-        if t >= clock[TARGET_TIME] or remaining <= NO_STEP * abs(t):
+        if t >= clock.target_time or remaining <= NO_STEP * abs(t):
             return REACHED
         if loop.capacity > 0 and ivec(loop.cursor, 1)[0] >= loop.capacity:
             return EVENTS_FULL
         if loop.log_capacity > 0 and ivec(loop.log_cursor, 1)[0] >= loop.log_capacity:
             return EVENTS_FULL
-        fixed = clock[FIXED_STEP] > 0.0
-        wanted = clock[FIXED_STEP] if fixed else min(clock[STEP_SIZE], clock[MAX_STEP])
+        fixed = clock.fixed_step > 0.0
+        wanted = clock.fixed_step if fixed else min(clock.step_size, clock.max_step)
         h = wanted
         if h * (1.0 + 1e-6) >= remaining:
             h = remaining
         elif not fixed and h > 0.5 * remaining:
             h = 0.5 * remaining
-        clock[TRIAL_STEP] = h
+        clock.trial_step = h
         multistep = loop.rows > 1 and rows_available(method) >= loop.rows
         status = trial_step(workspace, method, loop, h)
         # a step that fails may have met the position with a stage at which no matrix was measured
-        growth = control[MOST_CONDITION] if status == OK else min(control[MOST_CONDITION], STRAINED)
-        near = max(growth * rate[LEAST_CONDITION], rate[LOOKED_CONDITION])
-        if not fixed and rate[WORST_CONDITION] > near:
+        growth = control.most_condition if status == OK else min(control.most_condition, STRAINED)
+        near = max(growth * rate.least_condition, rate.looked_condition)
+        if not fixed and rate.worst_condition > near:
             return NEAR_SINGULAR
         if status == REANALYZE:
             return status
         if status != OK or (not fixed and not error[0] <= 1.0):
-            counters[REJECTED] += 1
-            clock[REJECTED_HERE] += 1.0
-            clock[PREVIOUS_NORM] = 0.0
-            if fixed or (clock[EAGER] > 0.0 and (status == OUTER_DIVERGED or status == OUTER_SLOW)):
+            counters.rejected += 1
+            clock.rejected_here += 1.0
+            clock.previous_norm = 0.0
+            if fixed or (clock.eager > 0.0 and (status == OUTER_DIVERGED or status == OUTER_SLOW)):
                 return status
             if status != OK:
                 h *= 0.25
             else:
                 h *= min(0.9, step_factor(error[0], error[1], 1.0))
-            clock[STEP_SIZE], clock[EQUAL_STEPS] = h, 0.0
+            clock.step_size, clock.equal_steps = h, 0.0
             if t + 0.01 * h == t or h < 1e-300:
                 return STEP_TOO_SMALL if status == OK else status
             continue
         if workspace.n_contacts > 0 and not fixed:
             leap = leap_of(workspace, method, loop, h)
             if leap > 1.0:
-                clock[STEP_SIZE], clock[EQUAL_STEPS] = 0.9 * h / leap, 0.0
-                counters[REJECTED] += 1
-                clock[REJECTED_HERE] += 1.0
+                clock.step_size, clock.equal_steps = 0.9 * h / leap, 0.0
+                counters.rejected += 1
+                clock.rejected_here += 1.0
                 continue
         if workspace.n_redundant > 0 and violates_redundant(workspace, 1.0):
             return VIOLATED
@@ -284,20 +253,20 @@ def run(workspace: Any, method: Any, loop: Any, chunk: int) -> int:
             # the stop time itself, not t + h with its rounding
             vec(workspace.t, 1)[0] = stop
         accept(workspace, method, loop)
-        if AWAY * rate[CONDITION] < rate[LOOKED_CONDITION]:
+        if AWAY * rate.condition < rate.looked_condition:
             # not within a trial: a step that leads astray would be looked at again and again
-            rate[LOOKED_CONDITION] = 0.0
+            rate.looked_condition = 0.0
         strained = partition_strained(workspace)
         if not fixed:
-            norm, order, hold = error[0], error[1], clock[HOLD]
+            norm, order, hold = error[0], error[1], clock.hold
             choice = vec(method.choice, CHOICE_SIZE)
             if multistep and loop.select != 0:
                 hold = choice[K] + 1.0
-                if clock[EQUAL_STEPS] >= hold and select_in_frames(workspace, method, loop.select, h):
+                if clock.equal_steps >= hold and select_in_frames(workspace, method, loop.select, h):
                     choice[K], order, norm = choice[NEXT_K], choice[NEXT_K], choice[NEXT_NORM]
                     choice[NEXT_K] = 0.0
             proposed = next_step(loop, h, norm, order, multistep, hold)
-            clock[STEP_SIZE] = max(proposed, wanted) if h < wanted and proposed >= h else proposed
+            clock.step_size = max(proposed, wanted) if h < wanted and proposed >= h else proposed
         if strained:
             return REPARTITION
     return CHUNK

@@ -20,22 +20,16 @@ from ..methods.history import history_time, recall
 from ..state.impact_law_codes import BY_FORCE
 from ..state.modes import ACTIVE, OPEN, STEP_FORCES, UNWATCHED, memories_at
 from ..state.run_records import (
-    CLOCK_SIZE,
     EVENTS_FULL,
-    PUSH_STEP,
-    PUSHED_FROM,
-    PUSHES_LEFT,
     REPARTITION,
-    STEP_SIZE,
     STEP_TOO_SMALL,
-    STOP_TIME,
-    TRIAL_STEP,
     VIOLATED,
     call_accept,
     call_find_events,
     call_locate,
+    clock_at,
 )
-from ..state.workspace_records import COUNTERS_SIZE, OF_IMPULSES, OK
+from ..state.workspace_records import OK, counters_at
 from .step_size import MAX_FACTOR, step_factor
 from .time_loop import partition_strained, violates_redundant
 
@@ -55,17 +49,17 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
         return EVENTS_FULL
     if loop.log_capacity > 0 and ivec(loop.log_cursor, 1)[0] >= loop.log_capacity:
         return EVENTS_FULL
-    clock, t, error = vec(loop.clock, CLOCK_SIZE), history_time(method, 0), vec(method.error, 2)
-    if clock[PUSH_STEP] == 0.0:
+    clock, t, error = clock_at(loop.clock), history_time(method, 0), vec(method.error, 2)
+    if clock.push_step == 0.0:
         begin_impulses(drive, workspace, method, loop)
         return OK
-    remaining, forces = clock[STOP_TIME] - t, any_force_law(drive, workspace)
-    h = min(clock[PUSH_STEP], remaining)
+    remaining, forces = clock.stop_time - t, any_force_law(drive, workspace)
+    h = min(clock.push_step, remaining)
     if forces and _any_acts(workspace):
-        h = min(h, clock[STEP_SIZE])
+        h = min(h, clock.step_size)
     if remaining > h > 0.5 * remaining:
         h = 0.5 * remaining
-    least, rows = SHORTEST * min(clock[PUSH_STEP], remaining), loop.rows
+    least, rows = SHORTEST * min(clock.push_step, remaining), loop.rows
     # a formula that begins with the accelerations of the newest row would begin with those of the contacts' mean forces
     loop.rows = ONE_STEP
     show_pending(workspace, drive.pending, drive.law)
@@ -84,18 +78,18 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
     a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
     for i in range(workspace.n_ext):
         aux[i] = a[i]
-    clock[TRIAL_STEP] = h
+    clock.trial_step = h
     if workspace.n_redundant > 0 and violates_redundant(workspace, 1.0):
         return VIOLATED
     status = NONE
     if forces:
-        clock[STEP_SIZE] = h * step_factor(error[0], error[1], MAX_FACTOR)
+        clock.step_size = h * step_factor(error[0], error[1], MAX_FACTOR)
         status = _end_at_forces(drive, workspace, method, loop, h)
         if status != OK and status != NONE:
             return status
     if status == NONE:
         if h == remaining:
-            vec(workspace.t, 1)[0] = clock[STOP_TIME]
+            vec(workspace.t, 1)[0] = clock.stop_time
         set_travel(workspace, method, loop, h)
         keep_watch(workspace, method, loop)
         touches = _find_touching(drive, workspace, method, loop, h, False)
@@ -109,9 +103,9 @@ def make_push_step(drive: Any, workspace: Any, method: Any, loop: Any) -> int:
             # at once: no step has been made
             return OK
         touches = _find_touching(drive, workspace, method, loop, now - t, True)
-    ivec(workspace.counters, COUNTERS_SIZE)[OF_IMPULSES] += 1
-    clock[PUSHED_FROM] = t
-    clock[PUSHES_LEFT] -= 1.0
+    counters_at(workspace.counters).of_impulses += 1
+    clock.pushed_from = t
+    clock.pushes_left -= 1.0
     if not touches and not only_impulses(loop):
         # nothing is left of the crowd
         end_pushing(workspace, loop, history_time(method, 0))

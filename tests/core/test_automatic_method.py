@@ -27,7 +27,7 @@ from tlismni.core.methods.automatic import METHOD_NAMES, Start, choose, describe
 from tlismni.core.methods.default import DEFAULT_METHOD
 from tlismni.core.methods.registry import METHODS
 from tlismni.core.simulation.start_figures import measure_start
-from tlismni.core.state.workspace_records import STIFFNESS_SCALE
+from tlismni.core.state.workspace_records import control_of
 from tlismni.models import load
 
 SMOOTH, STOPPED, CABLE = "chain", "pendulum_stop", "cable_pendulum"
@@ -100,7 +100,7 @@ def test_it_measures_what_runs_measure(name, elements):
     model = load(name, **({"elements": elements} if elements else {})).model
     run, start = Simulation(model, record=False), measure_start(model.assemble(t0=0.0), 0.0)
     assert start.rate == pytest.approx(run.scales.rate, rel=0.2)
-    assert start.vibration**2 == pytest.approx(run.workspace.arrays["control"][STIFFNESS_SCALE], rel=1e-6)
+    assert start.vibration**2 == pytest.approx(control_of(run.workspace.arrays["control"]).stiffness_scale, rel=1e-6)
     assert start.waves == run.assembly.has_waves
 
 

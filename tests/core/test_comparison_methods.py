@@ -8,7 +8,7 @@ from helpers import G, circle_pendulum, order, pendulum_angles, point_pendulum, 
 from test_orders import ANGLE, RATE, exact, swing
 from test_state import CASES, started, trajectory
 from tlismni.core import METHODS, EquationSystem, ModelError, Simulation, SimulationError, simulate
-from tlismni.core.state.workspace_records import CORRECTION
+from tlismni.core.state.workspace_records import convergence_of
 
 VARIANTS = {
     "baumgarte rk45": ("baumgarte", {}),
@@ -162,7 +162,7 @@ def test_correction_by_mu_goes_with_the_third_power_of_the_step(name):
     for h in (0.01, 0.005):
         sim = Simulation(point_pendulum(ANGLE, RATE), method, step=h, newton_tolerance=1e-13, **options)
         sim.advance(0.5)
-        moved.append(float(sim.workspace.arrays["rate"][CORRECTION]))
+        moved.append(float(convergence_of(sim.workspace.arrays["rate"]).correction))
     assert 0.0 < moved[0] < 1e-4
     assert order(moved) == pytest.approx(3.0, abs=0.5)
 

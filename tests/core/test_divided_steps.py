@@ -7,7 +7,6 @@ import pytest
 from scipy.integrate import solve_ivp
 from tlismni.core import EquationSystem, Simulation, SimulationError, simulate
 from tlismni.core.simulation.state import State
-from tlismni.core.state.run_records import FIXED_STEP
 
 H = 1e-3
 
@@ -90,7 +89,7 @@ def test_a_run_most_of_whose_steps_fail_ends_and_says_so(method):
         sim.run_to(10.0)
     assert f"; {sim.stats['divided_steps']} of {caught.value.t / H:.0f} steps so far did" in str(caught.value)
     assert 10 <= sim.stats["divided_steps"] < 11 + 0.1 * caught.value.t / H
-    assert sim.clock[FIXED_STEP] == H
+    assert sim.clock.fixed_step == H
 
 
 def test_a_master_that_goes_back_does_not_use_up_what_may_be_divided():

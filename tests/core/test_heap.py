@@ -14,7 +14,6 @@ from tlismni.core import (
     RigidBody2D,
     Simulation,
 )
-from tlismni.core.state.run_records import PUSH_STEP
 
 RADIUS, WIDTH, G = 0.05, 0.34, 9.81
 
@@ -130,7 +129,7 @@ def test_thirty_disks_some_of_which_balance_their_friction_under_any_load():
     turn the sign of the determinant that tells a jam."""
     sim = Simulation(heap(30, 0.3, 0.4, 8, 1e-3), "ebdf")
     sim.advance(0.3)
-    while sim.clock[PUSH_STEP] > 0.0:
+    while sim.clock.push_step > 0.0:
         # between two steps of impulses velocities are interpolated, and energies with them
         sim.advance(sim.t + 1e-3)
     values = dict(zip((c.name for c in sim.table.channels), sim.values(), strict=True))

@@ -32,7 +32,6 @@ from tlismni.core.contact_solvers.contact_blocks import WIDE, block_reals, block
 from tlismni.core.contact_solvers.row_sweeps import press_apart, sweep_rows
 from tlismni.core.events.zeno import SIZE
 from tlismni.core.state.modes import CLOSED, STEP_FORCES
-from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT
 
 G, R = 9.81, 0.1
 
@@ -42,8 +41,8 @@ def in_steps(model, step=None, method="ebdf", **options):
     sim = Simulation(model, method, **options)
     sim.advance(0.0)
     clock = sim.clock
-    clock[PUSH_STEP], clock[PUSHES] = step or SIZE * sim.scales.time, 1e9
-    clock[PUSHES_LEFT], clock[PUSHED_FROM] = 1e9, sim.t_internal
+    clock.push_step, clock.pushes = step or SIZE * sim.scales.time, 1e9
+    clock.pushes_left, clock.pushed_from = 1e9, sim.t_internal
     sim.drive.pending[:] = sim.memory.mode == CLOSED
     return sim
 
@@ -87,7 +86,7 @@ def test_what_rests_stays_where_it_is():
         assert now["ball.z"] == pytest.approx(R, abs=1e-12)
         assert now["ball.vz"] == pytest.approx(0.0, abs=1e-12)
         assert now["floor.normal_force"] == pytest.approx(2.0 * G, rel=1e-9)
-    assert sim.clock[PUSH_STEP] > 0.0
+    assert sim.clock.push_step > 0.0
     assert [event.kind for event in sim.events] == ["close"]
     n, newest = sim.assembly.n_extended, sim.method_arrays["history"][sim.method_arrays["ring"][0]]
     assert newest[2 * n : 2 * n + 7] == pytest.approx(np.zeros(7), abs=1e-9)
@@ -192,7 +191,7 @@ def test_a_state_within_the_steps_goes_on_alike():
     sim.advance(0.06)
     later = sim.values()
     sim.restore(state)
-    assert sim.clock[PUSH_STEP] > 0.0
+    assert sim.clock.push_step > 0.0
     sim.advance(0.06)
     assert np.array_equal(later, sim.values())
     for k in range(STEP_FORCES):
@@ -226,7 +225,7 @@ def test_units_do_not_matter():
     )  # fmt: skip
     large = in_steps(Model(gravity=(0.0, 0.0, -factor * G), bodies=[body], contacts=[floor]))
     large.advance(0.2)
-    assert large.clock[PUSH_STEP] == pytest.approx(small.clock[PUSH_STEP], rel=1e-12)
+    assert large.clock.push_step == pytest.approx(small.clock.push_step, rel=1e-12)
     assert values(large)["ball.x"] == pytest.approx(factor * values(small)["ball.x"], rel=1e-9)
     assert values(large)["ball.vx"] == pytest.approx(factor * values(small)["ball.vx"], rel=1e-9)
 

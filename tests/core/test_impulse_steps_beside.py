@@ -29,7 +29,6 @@ from tlismni.core import (
 )
 from tlismni.core.events.zeno import SIZE
 from tlismni.core.state.modes import CLOSED
-from tlismni.core.state.run_records import PUSH_STEP, PUSHED_FROM, PUSHES, PUSHES_LEFT, STEP_SIZE
 
 G, WIDTH, BAR = 9.81, 0.36, 0.1
 LAWS = {
@@ -96,10 +95,10 @@ def go_in_steps(sim, end, size=1.0, each=10):
     """Go to `end` (s) in steps of impulses of `size` times the usual step; rows that end begin again."""
     step, clock, t = size * SIZE * sim.scales.time, sim.clock, sim.t
     while t < end:
-        if clock[PUSH_STEP] == 0.0:
-            clock[PUSH_STEP] = clock[STEP_SIZE] = step
-            clock[PUSHES] = clock[PUSHES_LEFT] = 1e9
-            clock[PUSHED_FROM] = sim.t_internal
+        if clock.push_step == 0.0:
+            clock.push_step = clock.step_size = step
+            clock.pushes = clock.pushes_left = 1e9
+            clock.pushed_from = sim.t_internal
             sim.pending = [int(k) for k in np.flatnonzero(sim.memory.mode == CLOSED)]
         t = min(t + each * step, end)
         sim.advance(t)

@@ -5,7 +5,6 @@ import pytest
 from tlismni.core import Simulation, simulate
 from tlismni.core.methods.history import recall
 from tlismni.core.stage.accelerations import solve_accelerations
-from tlismni.core.state.run_records import TRIAL_STEP
 from tlismni.models import load
 
 UNSOLVED = 0.5
@@ -21,7 +20,7 @@ def unsolved(sim: Simulation) -> float:
     recall(sim.workspace.record, sim._method.record, 0)
     stored = arrays["a"][:n].copy()
     solved = solve_accelerations(sim.workspace.record) == 0  # not with pivots that are far from this position's
-    missing = float(sim.clock[TRIAL_STEP]) * (arrays["a"][:n] - stored) / arrays["weight_v"][:n]
+    missing = float(sim.clock.trial_step) * (arrays["a"][:n] - stored) / arrays["weight_v"][:n]
     for name, values in kept.items():
         arrays[name][:] = values
     return float(np.sqrt(np.mean(missing**2))) if solved else np.nan

@@ -9,37 +9,29 @@ from tlismni.core import Simulation, State
 from tlismni.core.recovery.policy import MOST_LOCATIONS, recover
 from tlismni.core.recovery.step_division import ALLOWANCE, MOST_HALVINGS
 from tlismni.core.state.run_records import (
-    DIVIDED_STEPS,
     DIVIDES,
     DONE,
     FALL_BACK,
-    FIXED_STEP,
-    HALVINGS,
     JAM,
     LAST_RESORT,
     NEAR_SINGULAR,
     NOT_DONE,
     OTHER_ROWS,
-    PARTS_UNTIL,
     REACHED,
-    REPAIRED_AT,
     REPARTITION,
-    STEP_SIZE,
     STEP_TOO_SMALL,
-    TRIAL_STEP,
     UNLOCATED,
     UNREPAIRED,
     VIOLATED,
 )
 from tlismni.core.state.workspace_records import (
     INNER_DIVERGED,
-    LEAST_CONDITION,
     NOT_FINITE,
     OK,
     OUTER_DIVERGED,
     OUTER_SLOW,
     REANALYZE,
-    WORST_CONDITION,
+    convergence_of,
 )
 from tlismni.models import load
 
@@ -68,8 +60,8 @@ class Asked:
 
     def strain(self):
         """The constraints become nearly dependent."""
-        rate = self.sim.workspace.arrays["rate"]
-        rate[LEAST_CONDITION], rate[WORST_CONDITION] = 1.0, 1e6
+        rate = convergence_of(self.sim.workspace.arrays["rate"])
+        rate.least_condition, rate.worst_condition = 1.0, 1e6
 
 
 def test_new_pivots_then_smaller_steps():
@@ -77,15 +69,15 @@ def test_new_pivots_then_smaller_steps():
     sim, clock = asked.sim, asked.sim.clock
     partitions = sim.stats["partitions"]
     assert asked(INNER_DIVERGED) == OK and sim.stats["partitions"] == partitions + 1
-    assert clock[REPAIRED_AT] == sim.t_internal
-    clock[TRIAL_STEP] = 0.01
-    assert asked(INNER_DIVERGED) == OK and clock[STEP_SIZE] == 0.0025 and sim.stats["partitions"] == partitions + 1
-    assert asked(REANALYZE) == OK and clock[REPAIRED_AT] == -math.inf
+    assert clock.repaired_at == sim.t_internal
+    clock.trial_step = 0.01
+    assert asked(INNER_DIVERGED) == OK and clock.step_size == 0.0025 and sim.stats["partitions"] == partitions + 1
+    assert asked(REANALYZE) == OK and clock.repaired_at == -math.inf
     assert asked(REANALYZE) == OK and sim.stats["partitions"] == partitions + 2
-    assert asked(OUTER_SLOW) == OUTER_SLOW and clock[REPAIRED_AT] == -math.inf
+    assert asked(OUTER_SLOW) == OUTER_SLOW and clock.repaired_at == -math.inf
     assert asked(NOT_FINITE) == NOT_FINITE and asked(STEP_TOO_SMALL) == STEP_TOO_SMALL and asked(JAM) == JAM
     assert sim.stats["partitions"] == partitions + 2
-    clock[TRIAL_STEP] = 1e-30
+    clock.trial_step = 1e-30
     assert asked(INNER_DIVERGED) == OK and asked(INNER_DIVERGED) == INNER_DIVERGED
 
 
@@ -103,22 +95,22 @@ def test_fixed_steps_are_halved_and_grow_again():
     asked = Asked("pendulum", method="hht", step=H)
     sim, clock, start = asked.sim, asked.sim.clock, asked.sim.t_internal
     asked.strain()
-    clock[TRIAL_STEP], steps = H, sim.stats["steps"]
-    assert asked(OUTER_DIVERGED) == OK and clock[FIXED_STEP] == H
-    assert asked(OUTER_DIVERGED) == DIVIDES and clock[FIXED_STEP] == H / 2
-    assert asked(OUTER_DIVERGED) == OK and clock[FIXED_STEP] == H / 4
-    assert clock[PARTS_UNTIL] == start + H and sim.divided_steps == 1
-    assert asked(NOT_FINITE) == OK and clock[FIXED_STEP] == H / 8 and clock[PARTS_UNTIL] == start + H / 2
+    clock.trial_step, steps = H, sim.stats["steps"]
+    assert asked(OUTER_DIVERGED) == OK and clock.fixed_step == H
+    assert asked(OUTER_DIVERGED) == DIVIDES and clock.fixed_step == H / 2
+    assert asked(OUTER_DIVERGED) == OK and clock.fixed_step == H / 4
+    assert clock.parts_until == start + H and sim.divided_steps == 1
+    assert asked(NOT_FINITE) == OK and clock.fixed_step == H / 8 and clock.parts_until == start + H / 2
     assert asked(REACHED) == REACHED  # something else than the end of its parts
     sim.advance(start + H)
-    assert sim.t_internal == start + H and clock[FIXED_STEP] == H and clock[HALVINGS] == 0.0
+    assert sim.t_internal == start + H and clock.fixed_step == H and clock.halvings == 0.0
     assert sim.stats["steps"] == steps + 6  # 4 parts of H/8, then 2 of H/4
-    clock[TRIAL_STEP] = H
+    clock.trial_step = H
     halvings = [asked(NOT_FINITE) for _ in range(MOST_HALVINGS)]
     assert halvings == [DIVIDES, *[OK] * (MOST_HALVINGS - 1)] and asked(NOT_FINITE) == NOT_FINITE
     sim.drive.end_recovery(clock)
-    assert clock[FIXED_STEP] == H
-    clock[DIVIDED_STEPS] = ALLOWANCE + 0.1 * sim.t_internal / H + 1.0
+    assert clock.fixed_step == H
+    clock.divided_steps = ALLOWANCE + 0.1 * sim.t_internal / H + 1.0
     assert asked(NOT_FINITE) == NOT_FINITE
 
 
@@ -135,7 +127,7 @@ def test_rows_that_repeat_others_are_looked_at_by_whoever_can():
     assert asked(REPARTITION) == REPARTITION and asked.answer(DONE) == OK
     assert asked(REPARTITION) == REPARTITION and asked.answer(NOT_DONE) == UNREPAIRED
     assert asked(REANALYZE) == REPARTITION and asked.answer(OTHER_ROWS) == OK
-    asked.sim.clock[REPAIRED_AT] = -math.inf
+    asked.sim.clock.repaired_at = -math.inf
     assert asked(REANALYZE) == REPARTITION and asked.answer(NOT_DONE) == UNREPAIRED
     asked.strain()
     assert asked(REANALYZE) == REPARTITION and asked.answer(NOT_DONE) == LAST_RESORT
@@ -149,10 +141,10 @@ def test_an_event_is_searched_for_with_new_pivots():
     """There is none in the step, so that it ends with a shorter one."""
     asked = Asked("pendulum_stop", 0.05)
     sim = asked.sim
-    sim.clock[TRIAL_STEP], before = 1e-3, sim.stats["partitions"]
+    sim.clock.trial_step, before = 1e-3, sim.stats["partitions"]
     assert asked(UNLOCATED) == OK and sim.stats["partitions"] == before + MOST_LOCATIONS
-    assert sim.clock[STEP_SIZE] == 0.25e-3
-    sim.clock[TRIAL_STEP] = 1e-30
+    assert sim.clock.step_size == 0.25e-3
+    sim.clock.trial_step = 1e-30
     assert asked(UNLOCATED) == UNLOCATED
 
 
@@ -176,7 +168,7 @@ def test_events_do_not_end_the_division_of_a_step(name):
     (whole, end), (stopped, _) = begun(name), begun(name)
     whole.advance(end)
     by_events(stopped, end)
-    assert whole.divided_steps > 0 and whole.clock[FIXED_STEP] == H
+    assert whole.divided_steps > 0 and whole.clock.fixed_step == H
     assert stopped.stats == whole.stats and stopped.events == whole.events
     assert stopped.state() == whole.state()
 
@@ -195,12 +187,12 @@ def test_a_state_within_a_divided_step_leads_on():
     """As bytes, too. Events of the cable come while a step is divided."""
     (sim, end), (other, _) = begun("a cable reaches the ground"), begun("a cable reaches the ground")
     states = []
-    by_events(sim, end, lambda: states.append(sim.state()) if sim.clock[HALVINGS] else None)
+    by_events(sim, end, lambda: states.append(sim.state()) if sim.clock.halvings else None)
     assert states
     for state in (states[0], states[-1]):
         other.restore(State.from_bytes(state.to_bytes()))
         assert other.state() == state
-        assert other.clock[FIXED_STEP] < H and other.clock[PARTS_UNTIL] >= other.t
+        assert other.clock.fixed_step < H and other.clock.parts_until >= other.t
         other.advance(end)
         assert other.state() == sim.state()
 
@@ -210,7 +202,7 @@ def test_how_many_steps_have_been_divided_decides():
     sim, end = begun("a block tips over the edge of another")
     sim.advance(end)
     before, divided = sim.state(), sim.divided_steps
-    sim.clock[DIVIDED_STEPS] += 1.0
+    sim.clock.divided_steps += 1.0
     assert sim.state() != before and sim.stats["divided_steps"] == divided + 1
 
 
@@ -218,7 +210,7 @@ def test_what_was_done_at_a_row_that_is_left_is_in_no_state():
     sim = Simulation(load("pendulum_stop").model)
     sim.advance(0.2)
     state = sim.state()
-    sim.clock[REPAIRED_AT] = 0.1
+    sim.clock.repaired_at = 0.1
     assert sim.state() == state
-    sim.clock[REPAIRED_AT] = sim.t_internal
+    sim.clock.repaired_at = sim.t_internal
     assert sim.state() != state

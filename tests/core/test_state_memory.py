@@ -23,7 +23,7 @@ def test_state_is_one_buffer_without_gaps(name):
     assert at == buffer.nbytes
     own = {n: x for n, x in sim.workspace.arrays.items() if n in buffer.dtype.names}
     own |= {f"method_{n}": x for n, x in sim.method_arrays.items()}
-    own |= {"clock": sim.clock, "watch": sim.watch, "guard": sim.guard.numbers}
+    own |= {"clock": sim.clock.numbers, "watch": sim.watch, "guard": sim.guard.numbers}
     assert own.keys() == set(buffer.dtype.names)
     for field, array in own.items():
         assert array.ctypes.data == buffer.ctypes.data + buffer.dtype.fields[field][1]
