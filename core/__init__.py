@@ -64,6 +64,8 @@ if TYPE_CHECKING:
     from .contacts.scalar_contact2d import scalar_contact as scalar_contact
     from .contacts.segment2d import DiskOnSegment2D as DiskOnSegment2D
     from .contacts.segment2d import Segment2D as Segment2D
+    from .contacts.shape import Shape2D as Shape2D
+    from .contacts.shape import Shape3D as Shape3D
     from .contacts.stop3d import AngleStop3D as AngleStop3D
     from .contacts.stop3d import DistanceStop3D as DistanceStop3D
     from .contacts.stop3d import Rope3D as Rope3D

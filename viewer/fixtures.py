@@ -1,26 +1,15 @@
 """Joints, forces and the shapes that contacts touch, as parts of a scene."""
 
 import math
-from collections.abc import Sequence
-from functools import singledispatch
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..core.contacts.contact2d import Contact2D, Disk2D, HalfPlane2D
-from ..core.contacts.coordinate_contact import CoordinateContact
-from ..core.contacts.disk_on_line import DiskOnLine2D
+from ..core.contacts.contact2d import Disk2D, HalfPlane2D
 from ..core.contacts.ring2d import Ring2D
 from ..core.elements import (
     AxialRod,
-    Bushing2D,
-    Clamp2D,
-    Distance2D,
-    Gear2D,
-    Prismatic2D,
-    Revolute2D,
-    ScalarJoint2D,
-    SpringDamper2D,
 )
 from ..core.model.markers import GROUND, Marker2D
 from .bodies import Stage, has_place
@@ -49,16 +38,34 @@ def add_fixtures(stage: Stage) -> None:
     _add_walls(stage)
 
 
-@singledispatch
+Draw = Callable[[Any, Stage], None]
+SYMBOLS: dict[str, Draw] = {}
+"""What draws elements of the plane, by their `symbol`. It finds by their names the fields of the element that it needs:
+markers a and b, a radius."""
+
+
+def symbol(name: str) -> Callable[[Draw], Draw]:
+    """Decorator: the function draws elements with this symbol."""
+
+    def register(draw: Draw) -> Draw:
+        SYMBOLS[name] = draw
+        return draw
+
+    return register
+
+
 def place(element: Any, stage: Stage) -> None:
-    """Put an element into the scene; what has no symbol stays out."""
+    """Put an element of the plane into the scene; what has no symbol there stays out."""
+    draw = SYMBOLS.get(element.symbol)
+    if draw is not None and all(isinstance(marker, Marker2D) for marker in element.markers()):
+        draw(element, stage)
 
 
 # joints and forces
 
 
-@place.register
-def _(element: Revolute2D, stage: Stage) -> None:
+@symbol("hinge")
+def _hinge(element: Any, stage: Stage) -> None:
     _drawn(element, element.a.body if element.b.body == GROUND else element.b.body, stage, 2)
     if GROUND in (element.a.body, element.b.body):
         drawing = Drawing(stage.size)
@@ -66,14 +73,14 @@ def _(element: Revolute2D, stage: Stage) -> None:
         stage.add_part(GROUND, 0, drawing)
 
 
-@place.register
-def _(element: Clamp2D, stage: Stage) -> None:
+@symbol("clamp")
+def _clamp(element: Any, stage: Stage) -> None:
     grounded = GROUND in (element.a.body, element.b.body)
     _drawn(element, GROUND if grounded else element.b.body, stage, 0 if grounded else 2)
 
 
-@place.register
-def _(element: Prismatic2D, stage: Stage) -> None:
+@symbol("guide")
+def _guide(element: Any, stage: Stage) -> None:
     """The line that b slides on, as long as its way, with the ground below it."""
     marker = element.a
     near, far = _reach(stage, marker, stage.motion.at(element.b), 0.16)
@@ -85,27 +92,31 @@ def _(element: Prismatic2D, stage: Stage) -> None:
     _on_marker(stage, marker, 0, drawing)
 
 
-@place.register
-def _(element: Distance2D, stage: Stage) -> None:
+@symbol("rod")
+def _rod(element: Any, stage: Stage) -> None:
     stage.scene.links.append(Link(element.name, "rod", _anchor(stage, element.a), _anchor(stage, element.b)))
     _drawn_ends(element, stage)
 
 
-@place.register
-def _(element: ScalarJoint2D, stage: Stage) -> None:
+@symbol("link")
+def _plain_link(element: Any, stage: Stage) -> None:
     """A rod between its first two markers, of one that has no symbol of its own."""
     markers = element.markers()
     if len(markers) > 1:
         stretched(stage, element.name, "rod", *markers[:2])
 
 
-@place.register
-def _(element: SpringDamper2D, stage: Stage) -> None:
-    _link(element, stage)
+@symbol("spring")
+def _spring(element: Any, stage: Stage) -> None:
+    """Between its markers; of a spring that turns a joint the coil stands in `mechanical.py`."""
+    if getattr(element, "measure", "distance") == "angle":
+        SYMBOLS["coil"](element, stage)
+    else:
+        _link(element, stage)
 
 
-@place.register
-def _(element: Bushing2D, stage: Stage) -> None:
+@symbol("bushing")
+def _bushing(element: Any, stage: Stage) -> None:
     a, b = (stage.motion.at(marker) for marker in (element.a, element.b))
     if float(np.max(np.linalg.norm(b - a, axis=1))) > NEAR * stage.size:
         _link(element, stage)
@@ -115,8 +126,8 @@ def _(element: Bushing2D, stage: Stage) -> None:
     stage.add_part(element.b.body, 2, drawing)
 
 
-@place.register
-def _(element: Gear2D, stage: Stage) -> None:
+@symbol("gears")
+def _gears(element: Any, stage: Stage) -> None:
     """Two wheels with spokes, so that they are seen to turn."""
     for marker, radius in ((element.a, element.radius_a), (element.b, element.radius_b)):
         drawing = Drawing(stage.size)
@@ -127,10 +138,14 @@ def _(element: Gear2D, stage: Stage) -> None:
         _on_marker(stage, marker, 0, drawing)
 
 
-def _link(element: SpringDamper2D | Bushing2D, stage: Stage) -> None:
-    damped, stiff = element.damping > 0.0, element.stiffness > 0.0
-    kind = "spring-damper" if damped and stiff else "damper" if damped else "spring"
-    stretched(stage, element.name, kind, element.a, element.b)
+def _link(element: Any, stage: Stage) -> None:
+    stretched(stage, element.name, kind_of_spring(element), *element.markers()[:2])
+
+
+def kind_of_spring(element: Any) -> str:
+    """Of a link, by the element's `stiffness` and `damping`; of one that does not say them, a spring."""
+    damped, stiff = getattr(element, "damping", 0.0) > 0.0, getattr(element, "stiffness", 1.0) > 0.0
+    return "spring-damper" if damped and stiff else "damper" if damped else "spring"
 
 
 def stretched(stage: Stage, name: str, kind: str, a: Marker2D, b: Marker2D) -> None:
@@ -148,14 +163,14 @@ def stretched(stage: Stage, name: str, kind: str, a: Marker2D, b: Marker2D) -> N
 def _drawn(element: Any, body: str, stage: Stage, layer: int) -> None:
     """What a drawing shows of an element, on a body."""
     drawing = Drawing(stage.size)
-    if isinstance(element, Revolute2D):
+    if element.symbol == "hinge":
         symbols.pin(drawing, stage.motion.places.at(element.b if body == element.b.body else element.a))
     else:
         draw_interaction(element, drawing, stage.motion.places)
     stage.add_part(body, layer, drawing)
 
 
-def _drawn_ends(element: Distance2D, stage: Stage) -> None:
+def _drawn_ends(element: Any, stage: Stage) -> None:
     for marker in (element.a, element.b):
         if marker.body == GROUND:
             at, drawing = stage.motion.places.at(marker), Drawing(stage.size)
@@ -168,8 +183,8 @@ def _drawn_ends(element: Distance2D, stage: Stage) -> None:
 # shapes of contacts
 
 
-@place.register
-def _(element: Contact2D, stage: Stage) -> None:
+@symbol("shapes")
+def _shapes(element: Any, stage: Stage) -> None:
     shapes = shapes_of(element)
     for shape in shapes:
         if isinstance(shape, HalfPlane2D):
@@ -180,8 +195,8 @@ def _(element: Contact2D, stage: Stage) -> None:
             _shape(shape, stage, 2 if isinstance(shape, Disk2D) else 0 if isinstance(shape, Ring2D) else 1)
 
 
-@place.register
-def _(element: DiskOnLine2D, stage: Stage) -> None:
+@symbol("line")
+def _line(element: Any, stage: Stage) -> None:
     line = element.line
     nodes = tuple(_anchor(stage, node) for node in line.corners)
     found = Line(element.name, nodes, 2.0 * line.radius, line.rounding, line.closed)
@@ -190,8 +205,8 @@ def _(element: DiskOnLine2D, stage: Stage) -> None:
     _shape(element.disk, stage, 2)
 
 
-@place.register
-def _(element: CoordinateContact, stage: Stage) -> None:
+@symbol("wall")
+def _wall(element: Any, stage: Stage) -> None:
     """A wall, if the gap is that of one place along x or y; what moves with other coordinates is a line that moves."""
     term = next(
         (t for t in element.terms if t.factor and coordinate_place(stage, t.body, t.coordinate) is not None), None

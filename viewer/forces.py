@@ -14,9 +14,10 @@ from ..core.contacts.disk_on_cable import DiskOnCable2D
 from ..core.contacts.disk_on_line import DiskOnLine2D
 from ..core.contacts.scalar_contact2d import ScalarContact2D
 from ..core.contacts.segment2d import DiskOnSegment2D
-from ..core.elements import AppliedForce2D, Distance2D, Revolute2D
+from ..core.elements.base import ForceElement
 from ..core.elements.formula2d import Frame2D, argument_names
 from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
+from ..core.multibody_model import Model
 from .bodies import Stage
 from .coordinates import coordinate_place
 from .scene import Arrow, Floats
@@ -36,7 +37,7 @@ FEW = 20
 def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
     """Arrows of everything whose force has a place; contacts that never touch have none, those that are `struck` have
     one although their blows are impulses."""
-    model, motion = stage.motion.model, stage.motion
+    model = stage.motion.model
     for contact in model.contacts:
         force, found = values(f"{contact.name}.normal_force"), None
         if force is not None and (contact.name in struck or np.any(force != 0.0)):
@@ -50,25 +51,36 @@ def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
             right = np.stack([normal[:, 1], -normal[:, 0]], axis=1)
             vector = vector + _slides_right(contact, stage, right) * friction[:, None] * right
         stage.scene.arrows.append(Arrow(contact.name, "contact", "N", at, vector))
-    for joint in model.joints:
-        if isinstance(joint, Revolute2D):
-            x, y = values(f"{joint.name}.force_x"), values(f"{joint.name}.force_y")
-            if x is not None and y is not None:
-                vector = np.stack([x, y], axis=1)
-                stage.scene.arrows.append(Arrow(joint.name, "joint", "N", motion.at(joint.b), vector))
-        tension = values(f"{joint.name}.tension") if isinstance(joint, Distance2D) else None
-        if isinstance(joint, Distance2D) and tension is not None:
-            pull = _unit(motion.at(joint.a) - motion.at(joint.b))
-            stage.scene.arrows.append(Arrow(joint.name, "joint", "N", motion.at(joint.b), tension[:, None] * pull))
+    for element in (*model.joints, *model.forces):
+        arrow = _arrow(element, stage, values)
+        if arrow is not None:
+            kind = "load" if isinstance(element, ForceElement) else "joint"
+            stage.scene.arrows.append(Arrow(element.name, kind, "N", *arrow))
+
+
+def _arrow(element: Any, stage: Stage, values: Values) -> tuple[Floats, Floats] | None:
+    """Place and force (F, 2) of the arrow that an element says it has (`Element.arrow`)."""
+    motion = stage.motion
+    if element.arrow == "components":
+        x, y = values(f"{element.name}.force_x"), values(f"{element.name}.force_y")
+        return None if x is None or y is None else (motion.at(element.b), np.stack([x, y], axis=1))
+    if element.arrow == "tension":
+        tension = values(f"{element.name}.tension")
+        a, b = motion.at(element.a), motion.at(element.b)
+        return None if tension is None else (b, tension[:, None] * _unit(a - b))
+    if element.arrow == "signals":
+        vector = signals_of(element, motion.model, motion.t, "xy")
+        if element.follower:
+            vector = _turned(vector, motion.direction(element.marker))
+        return (motion.at(element.marker), vector) if np.any(vector != 0.0) else None
+    return None
+
+
+def signals_of(element: Any, model: Model, t: Floats, axes: str) -> Floats:
+    """The time functions force_x and so on of a load at times (F,); inputs keep their start values."""
     inputs = {channel.name: k for k, channel in enumerate(model.inputs)}
     start = np.array([x for channel in model.inputs for x in (channel.start, *[0.0] * (INPUT_SIZE - 1))])
-    for load in model.forces:
-        if isinstance(load, AppliedForce2D):
-            vector = np.stack([signal_values(s, inputs, start, motion.t) for s in (load.force_x, load.force_y)], axis=1)
-            if load.follower:
-                vector = _turned(vector, motion.direction(load.marker))
-            if np.any(vector != 0.0):
-                stage.scene.arrows.append(Arrow(load.name, "load", "N", motion.at(load.marker), vector))
+    return np.stack([signal_values(getattr(element, f"force_{c}"), inputs, start, t) for c in axes], axis=1)
 
 
 def signal_values(signal: Signal, inputs: dict[str, int], start: Floats, t: Floats) -> Floats:

@@ -1,27 +1,15 @@
 """Drives, one-sided joints, springs of joints as parts of a scene: what has a length is a link, what turns a mark."""
 
 import math
+from typing import Any
 
 import numpy as np
 
-from ..core.contacts.angle_stop2d import AngleStop2D
-from ..core.contacts.rope2d import Rope2D
-from ..core.elements import (
-    Belt2D,
-    PIDController2D,
-    Rack2D,
-    RelativeLoad2D,
-    RelativeMotor2D,
-    Servo2D,
-    SlideSpring2D,
-    TableSpring2D,
-    TorsionSpring2D,
-)
 from ..core.model.markers import Marker2D
 from .bodies import Stage
 from .drawing import symbols
 from .drawing.shapes import INK, TOUCH, Circle, Drawing, Path, turned
-from .fixtures import SPOKES, _on_marker, _reach, place, stretched
+from .fixtures import SPOKES, _on_marker, _reach, stretched, symbol
 
 REACH = 0.14
 """Length of the marks of an end stop, in parts of the scene's size."""
@@ -29,8 +17,8 @@ TURNS, SPIRAL = 2.5, 0.035
 """Of the spiral of a torsion spring, and its outer radius in parts of the scene's size."""
 
 
-@place.register
-def _(element: Servo2D | PIDController2D | RelativeMotor2D | RelativeLoad2D, stage: Stage) -> None:
+@symbol("actuator")
+def _actuator(element: Any, stage: Stage) -> None:
     """A cylinder between its ends; a ring about the joint that it turns."""
     if element.measure == "distance":
         stretched(stage, element.name, "damper", element.a, element.b)
@@ -40,24 +28,13 @@ def _(element: Servo2D | PIDController2D | RelativeMotor2D | RelativeLoad2D, sta
         _on_marker(stage, element.b, 2, drawing)
 
 
-@place.register
-def _(element: Rope2D, stage: Stage) -> None:
+@symbol("rope")
+def _rope(element: Any, stage: Stage) -> None:
     stretched(stage, element.name, "rod", element.a, element.b)
 
 
-@place.register
-def _(element: TableSpring2D, stage: Stage) -> None:
-    stretched(stage, element.name, "spring-damper" if element.damping else "spring", element.a, element.b)
-
-
-@place.register
-def _(element: SlideSpring2D, stage: Stage) -> None:
-    kind = "spring" if not element.damping else "spring-damper" if element.stiffness else "damper"
-    stretched(stage, element.name, kind, element.a, element.b)
-
-
-@place.register
-def _(element: TorsionSpring2D, stage: Stage) -> None:
+@symbol("coil")
+def _coil(element: Any, stage: Stage) -> None:
     angles = np.linspace(0.0, 2.0 * math.pi * TURNS, 60)
     radii = SPIRAL * stage.size * (0.25 + 0.75 * angles / angles[-1])
     points = tuple((float(r * math.cos(a)), float(r * math.sin(a))) for r, a in zip(radii, angles, strict=True))
@@ -66,8 +43,8 @@ def _(element: TorsionSpring2D, stage: Stage) -> None:
     _on_marker(stage, element.b, 2, drawing)
 
 
-@place.register
-def _(element: AngleStop2D, stage: Stage) -> None:
+@symbol("angle-stop")
+def _angle_stop(element: Any, stage: Stage) -> None:
     """Where the first axis of b comes to rest, with a hand for that axis."""
     drawing, far = Drawing(stage.size), REACH * stage.size
     end, back = turned((far, 0.0), element.limit), turned((0.2 * far, 0.0), element.limit)
@@ -79,8 +56,8 @@ def _(element: AngleStop2D, stage: Stage) -> None:
     _on_marker(stage, element.b, 1, hand)
 
 
-@place.register
-def _(element: Rack2D, stage: Stage) -> None:
+@symbol("rack")
+def _rack(element: Any, stage: Stage) -> None:
     """The wheel with spokes, and the line that it rolls on as far as it comes."""
     _wheel(stage, element.a, element.radius)
     near, far = _reach(stage, element.b, stage.motion.at(element.a), 0.1)
@@ -89,8 +66,8 @@ def _(element: Rack2D, stage: Stage) -> None:
     _on_marker(stage, element.b, 1, drawing)
 
 
-@place.register
-def _(element: Belt2D, stage: Stage) -> None:
+@symbol("belts")
+def _belts(element: Any, stage: Stage) -> None:
     _wheel(stage, element.a, element.radius_a)
     _wheel(stage, element.b, element.radius_b)
     (ax, ay), (bx, by) = stage.motion.places.at(element.a), stage.motion.places.at(element.b)

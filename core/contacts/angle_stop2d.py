@@ -24,6 +24,7 @@ class AngleStop2D(ScalarContact2D):
     """
 
     type: Literal["AngleStop2D"] = "AngleStop2D"
+    symbol: ClassVar[str] = "angle-stop"
     formula: ClassVar[ScalarContact] = scalar_contact(room)
 
     a: Marker2D = Marker2D()

@@ -2,23 +2,22 @@
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar, Literal
-
-from pydantic import Field
+from typing import Any, ClassVar, Literal
 
 from ..elements.base import Form, Numbering, Row
 from ..laws.friction import CoulombFriction, LuGreFriction
-from ..model.base import NonNegative, Record
+from ..model.base import NonNegative
 from ..model.markers import Marker2D
 from ..rounding import LEAST_DEFLECTION
 from .bristle2d import bristle_disk_on_disk_kernel, bristle_disk_on_half_plane_kernel
 from .element import ContactElement
 from .normal2d import disk_on_disk_kernel, disk_on_half_plane_kernel
 from .pair_table import pair
+from .shape import Shape2D
 from .sliding2d import sliding_disk_on_disk_kernel, sliding_disk_on_half_plane_kernel
 
 
-class HalfPlane2D(Record):
+class HalfPlane2D(Shape2D):
     """The half-plane behind a line through the marker; its outward normal is the marker's second axis
     (angle + 90 degrees): a half-plane on the ground with angle 0 is a floor."""
 
@@ -27,7 +26,7 @@ class HalfPlane2D(Record):
     """On its edge; its second axis is the outward normal."""
 
 
-class Disk2D(Record):
+class Disk2D(Shape2D):
     """A disk about the marker; radius 0 is a point."""
 
     type: Literal["Disk2D"] = "Disk2D"
@@ -37,15 +36,14 @@ class Disk2D(Record):
     """m."""
 
 
-Shape2D = Annotated[HalfPlane2D | Disk2D, Field(discriminator="type")]
-
-
 class Contact2D(ContactElement):
     """Base of the planar contacts.
 
     Class attributes: `kernel` without friction, `sliding_kernel` with it, `bristle_kernel` with LuGre's; `width`, the
     number of coordinates that gap and sliding distance depend on.
     """
+
+    symbol: ClassVar[str] = "shapes"
 
     sliding_kernel: ClassVar[Any]
     bristle_kernel: ClassVar[Any]

@@ -12,7 +12,7 @@ from ..elements.base import BodyElement, Form, Numbering, Row
 from ..elements.measure3d import DISTANCE, PLACE, columns_of, coordinates_of
 from ..elements.turning_bodies import refuse_points
 from ..laws.friction import CoulombFriction, LuGreFriction, TurningFriction
-from ..model.base import Name, NonNegative, Record, Vector3
+from ..model.base import Name, NonNegative, Vector3
 from ..model.markers import Marker3D
 from ..rounding import LEAST_DEFLECTION, STILL
 from .bristle3d import BRISTLE_INDICES, bristle_sphere3d_kernel
@@ -23,6 +23,7 @@ from .frictionless3d import sphere3d_kernel
 from .moving_point3d import HOLLOW, ON_MESH, POINT_OF_CABLE, SEGMENTS, SUPPORT
 from .normal3d import PAIR_SIZE
 from .pair_table import Make, no_pair, pair, touching
+from .shape import Shape3D
 from .support3d import SUPPORT_NUMBERS
 from .surface3d import FIRST_ATTITUDE, SECOND_ATTITUDE
 
@@ -34,7 +35,7 @@ BRISTLES = {
 """Components of the bristles' deflection along the axes of the first marker, by the kind of the gap."""
 
 
-class HalfSpace3D(Record):
+class HalfSpace3D(Shape3D):
     """The half-space behind a plane through the marker; its outward normal is the marker's z axis: a half-space on the
     ground without attitude is a floor."""
 
@@ -43,7 +44,7 @@ class HalfSpace3D(Record):
     """On its surface; its z axis is the outward normal."""
 
 
-class Sphere3D(Record):
+class Sphere3D(Shape3D):
     """A sphere about the marker; radius 0 is a point."""
 
     type: Literal["Sphere3D"] = "Sphere3D"
@@ -66,6 +67,8 @@ class Contact3D(ContactElement):
     Coulomb's, `bristle_kernel` with LuGre's; `kind`, the measure of both markers that the gap is, less the radii;
     `width`, the number of coordinates that it depends on.
     """
+
+    symbol: ClassVar[str] = "shapes"
 
     kernel: ClassVar[Any] = sphere3d_kernel
     rubbing_kernel: ClassVar[Any] = rubbing_sphere3d_kernel

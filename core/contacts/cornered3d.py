@@ -8,16 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator, model_validator
 
-from ..model.base import NonNegative, Positive, Record
+from ..model.base import NonNegative, Positive
 from ..model.markers import Marker3D
 from .contact3d import Sphere3D
 from .rings3d import RIM_POINTS, RimPoints, Torus3D, check_rim_points
+from .shape import Shape3D
 from .support3d import SmoothShape3D
 
 FEWEST_VERTICES = 2
 
 
-class Cornered3D(Record):
+class Cornered3D(Shape3D):
     """Base of what touches half-spaces by its corners: the convex hull of spheres of one radius, which may be 0."""
 
     marker: Marker3D

@@ -9,15 +9,16 @@ from collections.abc import Sequence
 from typing import ClassVar, Literal
 
 from ..elements.formula2d import Frame2D
-from ..model.base import Positive, Record
+from ..model.base import Positive
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
 from .pair_table import pair
 from .scalar_contact2d import ScalarContact, scalar_contact
+from .shape import Shape2D
 
 
-class Box2D(Record):
+class Box2D(Shape2D):
     """A rectangle about the marker, its sides along the marker's axes."""
 
     type: Literal["Box2D"] = "Box2D"

@@ -24,6 +24,7 @@ from .pair_table import Make, body_of, contacts_of, in_plane
 from .polygon2d import Polygon2D
 from .ring2d import Ring2D
 from .segment2d import Segment2D
+from .shape import AnyShape2D
 
 MOST_PAIRS = 200_000
 
@@ -120,6 +121,8 @@ class ContactGroup2D(ContactGroup):
     """They touch disks, boxes and polygons."""
     rings: tuple[Ring2D, ...] = ()
     """They hold disks in them, every one of the group."""
+    shapes: tuple[AnyShape2D, ...] = ()
+    """Shapes of any kind, own ones too."""
     law: ContactLaw
     """What happens when a gap closes."""
     friction: Friction | None = None
@@ -138,11 +141,8 @@ class ContactGroup2D(ContactGroup):
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does."""
-        shapes: tuple[Record, ...] = (
-            *self.disks, *self.boxes, *self.polygons, *self.segments, *self.half_planes, *self.rings,
-        )  # fmt: skip
         return contacts_between(
-            self.name, shapes, law=self.law, friction=self.friction, except_bodies=self.except_bodies,
+            self.name, self.all_shapes(), law=self.law, friction=self.friction, except_bodies=self.except_bodies,
             pass_through=self.pass_through, surface_speed=self.surface_speed, surface_body=self.surface_body,
             compliance=self.compliance,
         )  # fmt: skip

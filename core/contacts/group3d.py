@@ -4,7 +4,7 @@ from typing import Literal
 
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
-from ..model.base import Name, Positive, Record, Vector3
+from ..model.base import Name, Positive, Vector3
 from ..model.signals import Signal
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
@@ -14,6 +14,7 @@ from .groups import ContactGroup
 from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D
 from .round3d import Smooth3D
+from .shape import AnyShape3D
 
 
 class ContactGroup3D(ContactGroup):
@@ -42,6 +43,8 @@ class ContactGroup3D(ContactGroup):
     """They touch spheres anywhere, and half-spaces by points."""
     half_spaces: tuple[HalfSpace3D, ...] = ()
     """They touch all shapes but half-spaces."""
+    shapes: tuple[AnyShape3D, ...] = ()
+    """Shapes of any kind, own ones too."""
     law: ContactLaw
     """What happens when a gap closes."""
     friction: Friction | None = None
@@ -65,12 +68,8 @@ class ContactGroup3D(ContactGroup):
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
         box and a cylinder, if `pass_through` does not name them."""
-        cornered: tuple[Record, ...] = (
-            *self.boxes, *self.polyhedra, *self.capsules, *self.cylinders, *self.meshes, *self.smooth,
-            *self.cables,
-        )  # fmt: skip
         return contacts_between(
-            self.name, (*self.spheres, *cornered, *self.half_spaces), law=self.law, friction=self.friction,
+            self.name, self.all_shapes(), law=self.law, friction=self.friction,
             turning=self.turning, except_bodies=self.except_bodies, pass_through=self.pass_through,
             surface_speed=self.surface_speed, surface_direction=self.surface_direction, surface_body=self.surface_body,
             compliance=self.compliance,

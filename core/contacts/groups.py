@@ -7,6 +7,7 @@ from ..lazy_import import RecordsOf
 from ..model.base import Name
 from ..model.open_union import OpenRecord, OpenUnion
 from .element import ContactElement
+from .shape import Shape
 
 
 class ContactGroup(OpenRecord):
@@ -14,6 +15,11 @@ class ContactGroup(OpenRecord):
 
     name: Name
     """Names of its contacts begin with it."""
+
+    def all_shapes(self) -> Sequence[Shape]:
+        """The shapes of all of its fields that hold some, in their order."""
+        values = (getattr(self, name) for name in type(self).model_fields)
+        return [shape for value in values if isinstance(value, tuple) for shape in value if isinstance(shape, Shape)]
 
     def contacts(self) -> Sequence[ContactElement]:
         """Its contacts."""

@@ -12,7 +12,7 @@ from ..elements.cable_kernel3d import NODAL_IN_SPACE
 from ..elements.cable_shape import weights
 from ..elements.material_point3d import MaterialPoint3D
 from ..elements.named_body import body_named
-from ..model.base import Name, NonNegative, Record
+from ..model.base import Name, NonNegative
 from ..model.markers import Marker3D
 from .bristle3d import bristle_cable3d_kernel
 from .cable_contact3d import cable3d_contact_kernel, gripping_cable3d_kernel, rubbing_cable3d_kernel
@@ -20,9 +20,10 @@ from .cable_foot3d import FOOT_VECTORS, FOOT_WIDTH
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .moving_point3d import ON_CABLE, POINT_OF_CABLE
 from .pair_table import Make, touching
+from .shape import Shape3D
 
 
-class CableLine3D(Record):
+class CableLine3D(Shape3D):
     """A cable as a shape of a `ContactGroup3D`: spheres touch it anywhere, half-spaces by evenly spaced points."""
 
     type: Literal["CableLine3D"] = "CableLine3D"

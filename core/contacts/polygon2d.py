@@ -14,13 +14,13 @@ import numpy as np
 from pydantic import field_validator
 
 from ..elements.formula2d import Frame2D
-from ..model.base import Record
 from ..model.markers import Marker2D
 from .contact2d import Disk2D, DiskOnHalfPlane2D, HalfPlane2D
 from .disk_contact2d import DiskContact2D
 from .disk_on_box2d import Box2D, DiskOnBox2D
 from .pair_table import Make, pair, touching
 from .scalar_contact2d import ScalarContact, scalar_contact
+from .shape import Shape2D
 
 ROUND = 1e-3
 """Of the shortest side of both: radius of corners where shapes with corners touch each other. A point that comes along
@@ -32,7 +32,7 @@ STRAIGHT = 1e-9
 """Sine of the angle at a corner below which it is none."""
 
 
-class Polygon2D(Record):
+class Polygon2D(Shape2D):
     """A convex polygon, its corners given along the marker's axes."""
 
     type: Literal["Polygon2D"] = "Polygon2D"

@@ -11,16 +11,17 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from ..elements.formula2d import Frame2D
-from ..model.base import Positive, Record
+from ..model.base import Positive
 from ..model.markers import Marker2D
 from .contact2d import Disk2D
 from .disk_contact2d import DiskContact2D
 from .geometry_kinds import RING, are
 from .pair_table import pair
 from .scalar_contact2d import ScalarContact, scalar_contact
+from .shape import Shape2D
 
 
-class Ring2D(Record):
+class Ring2D(Shape2D):
     """A round hole about the marker, touched from inside: the bore of a bearing, a drum."""
 
     type: Literal["Ring2D"] = "Ring2D"

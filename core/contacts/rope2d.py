@@ -31,6 +31,7 @@ class Rope2D(ScalarContact2D):
     """
 
     type: Literal["Rope2D"] = "Rope2D"
+    symbol: ClassVar[str] = "rope"
     formula: ClassVar[ScalarContact] = scalar_contact(slack)
 
     a: Marker2D = Marker2D()

@@ -16,7 +16,7 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, mat, to_fixed_tuple, vec
 from ..elements.base import Numbering, Row
 from ..elements.geometry2d import arms, bearing, distance, height_over_line
-from ..model.base import NonNegative, Positive, Record
+from ..model.base import NonNegative, Positive
 from ..model.markers import Marker2D
 from .bristle2d import act_bristles
 from .contact2d import Contact2D, Disk2D
@@ -24,6 +24,7 @@ from .geometry_kinds import SEGMENT, are
 from .normal2d import act, is_sleeping
 from .pair_table import no_pair, pair
 from .polygon2d import ANGULAR
+from .shape import Shape2D
 from .sliding2d import act_sliding
 
 QUARTER_TURN = 0.5 * np.pi
@@ -128,7 +129,7 @@ def bristle_disk_on_segment_kernel(job: int, t: float, b: Any) -> None:
         act_bristles(b, job, t, e, g, g_gradient, g_hessian, gradient, hessian)
 
 
-class Segment2D(Record):
+class Segment2D(Shape2D):
     """A segment from the marker along its first axis, with round ends. Both sides can be touched."""
 
     type: Literal["Segment2D"] = "Segment2D"

@@ -184,6 +184,7 @@ class Rope3D(Stop3D):
     """A rope without mass between markers `a` and `b`, of length `length` when it is taut; see `Rope2D`."""
 
     type: Literal["Rope3D"] = "Rope3D"
+    symbol: ClassVar[str] = "rope"
     measured: ClassVar[int] = DISTANCE
 
     length: Positive
@@ -201,6 +202,7 @@ class DistanceStop3D(LimitStop3D):
     """The distance of the points of markers `a` and `b` stays below or above `limit`; see `Rope3D`."""
 
     type: Literal["DistanceStop3D"] = "DistanceStop3D"
+    symbol: ClassVar[str] = "rope"
     measured: ClassVar[int] = DISTANCE
 
     limit: Positive

@@ -19,6 +19,7 @@ from ..compiled.needed import numba_module
 from ..errors import ModelError
 from ..laws.formula import FormulaRecord, formula_address
 from ..model.markers import Marker3D
+from .shape import Shape3D
 
 SUPPORT_RESULT = types.UniTuple(types.float64, 10)
 SUPPORT_SIGNATURE = SUPPORT_RESULT(*([types.float64] * 7))
@@ -30,12 +31,13 @@ call_support = caller(SUPPORT_SIGNATURE)
 """call_support(address, x, y, z, p0, p1, p2, p3) -> (h, h_x, h_y, h_z, h_xx, h_xy, h_xz, h_yy, h_yz, h_zz)."""
 
 
-class SmoothShape3D(FormulaRecord):
+class SmoothShape3D(FormulaRecord, Shape3D):
     """Base of smooth convex shapes about a marker that touch half-spaces, a user's own too.
 
     A subclass says its sizes as fields (at most four numbers) and its `formula`, made by `support_formula`.
     """
 
+    own_type: ClassVar[bool] = True
     parameter_count: ClassVar[int] = SUPPORT_NUMBERS
     shared_fields: ClassVar[tuple[str, ...]] = ("marker",)
 

@@ -62,6 +62,8 @@ class AppliedForce2D(_AppliedLoad2D):
     """Force at `marker`: components in N, in the inertial frame, or along the marker's own axes if `follower`."""
 
     type: Literal["AppliedForce2D"] = "AppliedForce2D"
+    symbol: ClassVar[str] = "force"
+    arrow: ClassVar[str] = "signals"
     marker: Marker2D
     """Where the force acts."""
     force_x: Signal = Constant(value=0.0)
@@ -95,6 +97,7 @@ class AppliedTorque2D(_AppliedLoad2D):
     """Torque on `body`, N m, counter-clockwise positive."""
 
     type: Literal["AppliedTorque2D"] = "AppliedTorque2D"
+    symbol: ClassVar[str] = "torque"
     body: Name
     """Name of the body."""
     torque: Signal

@@ -114,6 +114,7 @@ class AppliedForce3D(_AppliedLoad3D):
     """Force at `marker`: components in N, along the axes of space, or along the marker's own if `follower`."""
 
     type: Literal["AppliedForce3D"] = "AppliedForce3D"
+    arrow: ClassVar[str] = "signals"
     force_x: Signal = NOTHING
     """Along x, N."""
     force_y: Signal = NOTHING

@@ -175,6 +175,13 @@ class Element(OpenRecord):
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ()
     rate_rows: ClassVar[Sequence[int]] = ()
+    symbol: ClassVar[str] = "none"
+    """What it looks like: a name of those that drawings know, in the plane "spring", "rod", "actuator" and others
+    (`viewer/fixtures.py`), in space also "ball" or "pin" (`viewer/space/fixtures.py`); "none": it is not seen."""
+    arrow: ClassVar[str] = "none"
+    """Which arrow shows its force: "components", its channels force_x, force_y, in space force_z, on marker b (in space
+    along the axes of marker a); "tension", its channel of that name, from marker b to a; "signals", its time functions
+    force_x and so on, at `marker`; "none"."""
 
     name: Name
     """Unique in its model; channels begin with it."""

@@ -19,6 +19,7 @@ class Belt2D(RollingPair2D):
     """
 
     type: Literal["Belt2D"] = "Belt2D"
+    symbol: ClassVar[str] = "belts"
     sides: ClassVar[str] = "both pulleys are"
     formula: ClassVar[ScalarConstraint] = scalar_constraint(arcs)
     multiplier: ClassVar[tuple[str, str, str]] = (

@@ -74,6 +74,7 @@ class Bushing2D(PairElement2D, ForceElement):
     """
 
     type: Literal["Bushing2D"] = "Bushing2D"
+    symbol: ClassVar[str] = "bushing"
     kernel: ClassVar[Any] = bushing2d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN
 

@@ -183,6 +183,7 @@ class Bushing3D(Pair3D):
     """
 
     type: Literal["Bushing3D"] = "Bushing3D"
+    symbol: ClassVar[str] = "bushing"
     kernel: ClassVar[Any] = bushing3d_kernel
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = full_pattern(14)
 

@@ -126,6 +126,7 @@ class CableClamp3D(JointElement):
     """
 
     type: Literal["CableClamp3D"] = "CableClamp3D"
+    symbol: ClassVar[str] = "clamp"
     kernel: ClassVar[Any] = cable_clamp3d_kernel
     constraint_rows: ClassVar[int] = 5
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = tuple(sorted({*TURNED, *((j, i) for i, j in TURNED)}))

@@ -27,6 +27,7 @@ class Clamp2D(AngleHeld2D):
     """
 
     type: Literal["Clamp2D"] = "Clamp2D"
+    symbol: ClassVar[str] = "clamp"
     kernel: ClassVar[Any] = clamp2d_kernel
     constraint_rows: ClassVar[int] = 3
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ((2, 2), (5, 5))

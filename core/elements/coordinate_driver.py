@@ -47,6 +47,7 @@ class CoordinateDriver(JointElement):
     """Coordinate `coordinate` of `body` follows `motion`(t). Channel: the driving force or torque."""
 
     type: Literal["CoordinateDriver"] = "CoordinateDriver"
+    symbol: ClassVar[str] = "driver"
     kernel: ClassVar[Any] = coordinate_driver_kernel
     constraint_rows: ClassVar[int] = 1
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0),)

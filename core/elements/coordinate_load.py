@@ -33,6 +33,7 @@ class CoordinateLoad(ForceElement):
     """
 
     type: Literal["CoordinateLoad"] = "CoordinateLoad"
+    symbol: ClassVar[str] = "load"
     kernel: ClassVar[Any] = coordinate_load_kernel
 
     body: Name

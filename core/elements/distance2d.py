@@ -21,6 +21,8 @@ class Distance2D(ScalarJoint2D, PairElement2D):
     """Markers `a` and `b` keep the distance `length` (a massless rod). Channel: force in it, tension positive."""
 
     type: Literal["Distance2D"] = "Distance2D"
+    symbol: ClassVar[str] = "rod"
+    arrow: ClassVar[str] = "tension"
     formula: ClassVar[ScalarConstraint] = scalar_constraint(excess_length)
     multiplier: ClassVar[tuple[str, str, str]] = ("tension", "N", "force in the rod, tension positive")
 

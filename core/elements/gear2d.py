@@ -31,6 +31,7 @@ class Gear2D(RollingPair2D):
     """
 
     type: Literal["Gear2D"] = "Gear2D"
+    symbol: ClassVar[str] = "gears"
     formula: ClassVar[ScalarConstraint] = scalar_constraint(arcs)
     multiplier: ClassVar[tuple[str, str, str]] = (
         "tooth_force", "N", "force between the teeth; positive: its torque on a wheel of positive radius is negative",

@@ -39,6 +39,7 @@ class Joint3D(JointElement):
 
     symbol: ClassVar[str] = "ball"
     """What it looks like: "ball", "pin", "cross", "block", "sleeve", "slider" or "bead" on a bar, "pane", "rod"."""
+    arrow: ClassVar[str] = "components"
     turns: ClassVar[bool] = False
     """Whether it turns about the z axis of its markers: channels `angle`, whole turns counted, `angular_velocity`."""
     slides: ClassVar[bool] = False

@@ -52,6 +52,7 @@ class MovingFrame2D(PlanarFrame):
     """
 
     type: Literal["MovingFrame2D"] = "MovingFrame2D"
+    symbol: ClassVar[str] = "frame"
     kernel: ClassVar[Any] = moving_frame2d_kernel
     constraint_rows: ClassVar[int] = 3
     jacobian_pattern: ClassVar[Sequence[tuple[int, int]]] = ((0, 0), (1, 1), (2, 2))

@@ -19,6 +19,7 @@ class PIDController2D(PIDLaw, PairElement2D):
     """
 
     type: Literal["PIDController2D"] = "PIDController2D"
+    symbol: ClassVar[str] = "actuator"
     width: ClassVar[int] = 6
 
     measure: Measure = "angle"

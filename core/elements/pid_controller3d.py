@@ -31,6 +31,7 @@ class PIDController3D(PIDLaw, SensedTurns3D, Pair3D):
     """
 
     type: Literal["PIDController3D"] = "PIDController3D"
+    symbol: ClassVar[str] = "actuator"
     width: ClassVar[int] = SIZE
 
     measure: Measure = "angle"

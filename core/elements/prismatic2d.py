@@ -36,6 +36,7 @@ class Prismatic2D(AngleHeld2D):
     """
 
     type: Literal["Prismatic2D"] = "Prismatic2D"
+    symbol: ClassVar[str] = "guide"
     kernel: ClassVar[Any] = prismatic2d_kernel
     constraint_rows: ClassVar[int] = 2
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = FULL_PATTERN

@@ -26,6 +26,7 @@ class Rack2D(RollingPair2D):
     """
 
     type: Literal["Rack2D"] = "Rack2D"
+    symbol: ClassVar[str] = "rack"
     sides: ClassVar[str] = "wheel and rack are both"
     formula: ClassVar[ScalarConstraint] = scalar_constraint(rolled)
     multiplier: ClassVar[tuple[str, str, str]] = (

@@ -7,7 +7,7 @@ gradients of both.
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -138,6 +138,7 @@ class Gear3D(Relation3D):
     """
 
     type: Literal["Gear3D"] = "Gear3D"
+    symbol: ClassVar[str] = "gears"
     frame_a: Marker3D
     """In which wheel a turns."""
     wheel_a: Marker3D
@@ -176,6 +177,7 @@ class RackAndPinion3D(Relation3D):
     """
 
     type: Literal["RackAndPinion3D"] = "RackAndPinion3D"
+    symbol: ClassVar[str] = "rack"
     frame: Marker3D
     """In which the wheel turns."""
     wheel: Marker3D
@@ -199,6 +201,7 @@ class Screw3D(Relation3D):
     same markers."""
 
     type: Literal["Screw3D"] = "Screw3D"
+    symbol: ClassVar[str] = "sleeve"
     a: Marker3D
     """The first marker."""
     b: Marker3D

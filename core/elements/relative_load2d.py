@@ -1,6 +1,6 @@
 """Force or torque between two planar bodies as a time function or an input; see `load_law`."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from .load_law import LoadLaw
 from .measure2d import MeasuredElement2D
@@ -15,3 +15,4 @@ class RelativeLoad2D(LoadLaw, MeasuredForce2D, MeasuredElement2D):
     """
 
     type: Literal["RelativeLoad2D"] = "RelativeLoad2D"
+    symbol: ClassVar[str] = "actuator"

@@ -1,6 +1,6 @@
 """Force or torque between two bodies in space as a time function or an input; see `load_law`."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from .load_law import LoadLaw
 from .measured_force3d import Measure, MeasuredForce3D
@@ -15,6 +15,7 @@ class RelativeLoad3D(LoadLaw, MeasuredForce3D):
     """
 
     type: Literal["RelativeLoad3D"] = "RelativeLoad3D"
+    symbol: ClassVar[str] = "actuator"
 
     measure: Measure = "angle"
     """What it moves: the angle of b about the z axis of a, its place along it, or the distance of the points."""

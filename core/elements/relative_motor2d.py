@@ -4,7 +4,7 @@ Phi = x(a, b) - f(t).
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -59,6 +59,7 @@ class RelativeMotor2D(JointElement, MeasuredElement2D):
     """
 
     type: Literal["RelativeMotor2D"] = "RelativeMotor2D"
+    symbol: ClassVar[str] = "actuator"
 
     motion: Signal
     """What it follows, rad or m over s. The bodies must start where it says; an input leads them there."""

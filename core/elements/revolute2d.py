@@ -90,6 +90,8 @@ class Revolute2D(PairElement2D, JointElement):
     """Markers `a` and `b` share a point. Its force channels are the force on body b, N."""
 
     type: Literal["Revolute2D"] = "Revolute2D"
+    symbol: ClassVar[str] = "hinge"
+    arrow: ClassVar[str] = "components"
     kernel: ClassVar[Any] = revolute2d_kernel
     constraint_rows: ClassVar[int] = 2
     tangent_pattern: ClassVar[Sequence[tuple[int, int]]] = ((2, 2), (5, 5))

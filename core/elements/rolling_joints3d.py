@@ -1,7 +1,7 @@
 """Wheels and balls that roll on a plane, without sliding and without leaving it."""
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class RollingSphere3D(Joint3D):
     """
 
     type: Literal["RollingSphere3D"] = "RollingSphere3D"
+    symbol: ClassVar[str] = "rolling-sphere"
     radius: Positive
     """m."""
 
@@ -42,6 +43,7 @@ class RollingDisk3D(Joint3D):
     """
 
     type: Literal["RollingDisk3D"] = "RollingDisk3D"
+    symbol: ClassVar[str] = "rolling-disk"
     radius: Positive
     """Of the disk, m; of a rounded one to its outermost circle."""
     rim_radius: float = 0.0

@@ -87,6 +87,8 @@ class ScalarJoint2D(JointElement):
     -(gradient of the formula) (multiplier).
     """
 
+    symbol: ClassVar[str] = "link"
+
     formula: ClassVar[ScalarConstraint]
     constraint_rows: ClassVar[int] = 1
     multiplier: ClassVar[tuple[str, str, str]] = ("multiplier", "N", "force against the growth of its formula")

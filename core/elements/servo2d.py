@@ -1,6 +1,6 @@
 """Servo between two planar bodies; see `servo_law`."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from .measure2d import MeasuredElement2D
 from .measured_force import MeasuredForce2D
@@ -14,3 +14,4 @@ class Servo2D(ServoLaw, MeasuredForce2D, MeasuredElement2D):
     """
 
     type: Literal["Servo2D"] = "Servo2D"
+    symbol: ClassVar[str] = "actuator"

@@ -1,6 +1,6 @@
 """Servo between two bodies in space; see `servo_law`."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from .measured_force3d import CountingForce3D, Measure
 from .servo_law import ServoLaw
@@ -14,6 +14,7 @@ class Servo3D(ServoLaw, CountingForce3D):
     """
 
     type: Literal["Servo3D"] = "Servo3D"
+    symbol: ClassVar[str] = "actuator"
 
     measure: Measure = "angle"
     """What it moves."""

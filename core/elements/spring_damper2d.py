@@ -15,6 +15,7 @@ class SpringDamper2D(SpringLaw, MeasuredForce2D):
     """Spring and damper between markers `a` and `b`."""
 
     type: Literal["SpringDamper2D"] = "SpringDamper2D"
+    symbol: ClassVar[str] = "spring"
     own_measure: ClassVar[Measure | None] = "distance"
 
     stiffness: NonNegative
@@ -35,6 +36,7 @@ class SlideSpring2D(SpringLaw, MeasuredForce2D):
     """
 
     type: Literal["SlideSpring2D"] = "SlideSpring2D"
+    symbol: ClassVar[str] = "spring"
     own_measure: ClassVar[Measure | None] = "slide"
 
     stiffness: NonNegative = 0.0
@@ -53,6 +55,7 @@ class TorsionSpring2D(SpringLaw, MeasuredForce2D):
     """
 
     type: Literal["TorsionSpring2D"] = "TorsionSpring2D"
+    symbol: ClassVar[str] = "coil"
     own_measure: ClassVar[Measure | None] = "angle"
 
     stiffness: NonNegative = 0.0

@@ -24,6 +24,7 @@ class SpringDamper3D(SpringLaw, _Spring3D):
     """
 
     type: Literal["SpringDamper3D"] = "SpringDamper3D"
+    symbol: ClassVar[str] = "spring"
     own_measure: ClassVar[Measure | None] = "distance"
 
     natural_length: NonNegative | Signal
@@ -38,6 +39,7 @@ class AxialSpring3D(SpringLaw, _Spring3D):
     """
 
     type: Literal["AxialSpring3D"] = "AxialSpring3D"
+    symbol: ClassVar[str] = "spring"
     own_measure: ClassVar[Measure | None] = "slide"
 
     natural_position: float = 0.0
@@ -51,6 +53,7 @@ class TorsionSpring3D(SpringLaw, _Spring3D, CountingForce3D):
     """
 
     type: Literal["TorsionSpring3D"] = "TorsionSpring3D"
+    symbol: ClassVar[str] = "coil"
     own_measure: ClassVar[Measure | None] = "angle"
 
     natural_angle: float = 0.0

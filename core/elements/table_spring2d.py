@@ -16,6 +16,7 @@ class TableSpring2D(TableLaw, MeasuredForce2D):
     """
 
     type: Literal["TableSpring2D"] = "TableSpring2D"
+    symbol: ClassVar[str] = "spring"
     own_measure: ClassVar[Measure | None] = "distance"
 
     lengths_table: Annotated[tuple[float, ...], Field(min_length=4)]

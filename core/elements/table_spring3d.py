@@ -1,6 +1,6 @@
 """Spring in space whose force over its length, place or angle is a table: F = f(x) + c x', f a cubic spline."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -18,6 +18,7 @@ class TableSpring3D(TableLaw, CountingForce3D):
     """
 
     type: Literal["TableSpring3D"] = "TableSpring3D"
+    symbol: ClassVar[str] = "spring"
 
     measure: Measure = "distance"
     """What its force depends on."""

@@ -34,14 +34,20 @@ def own_classes(model: Record) -> dict[str, type[OpenRecord]]:
         if not isinstance(record, OpenRecord):
             continue
         kind = type(record)
-        if is_own(kind):
-            name = kind.model_fields["type"].default
+        name = kind.model_fields["type"].default
+        if is_own(kind) and not _read_as_ours(kind, name):
             if found.setdefault(name, kind) is not kind:
                 raise ModelError(
                     f"two own classes of the model have the type '{name}': {place_of(found[name])} and "
                     f"{place_of(kind)}; a model file tells them apart by that name: give one of them another"
                 )
     return found
+
+
+def _read_as_ours(kind: type[OpenRecord], name: str) -> bool:
+    """Whether a user's class has the type of a class of this library that it inherits from (`contacts/shape.py`)."""
+    bases = [base for base in kind.__mro__[1:] if issubclass(base, OpenRecord) and not is_own(base)]
+    return any("type" in base.model_fields and base.model_fields["type"].default == name for base in bases)
 
 
 def place_of(kind: type) -> str:

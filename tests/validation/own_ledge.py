@@ -2,17 +2,15 @@
 
 import math
 from collections.abc import Sequence
-from typing import Literal
 
-from tlismni.core import Disk2D, Marker2D, ScalarContact2D, scalar_contact
+from tlismni.core import Disk2D, Marker2D, ScalarContact2D, Shape2D, scalar_contact
 from tlismni.core.contacts.pair_table import pair
-from tlismni.core.model.base import Positive, Record
+from tlismni.core.model.base import Positive
 
 
-class Ledge2D(Record):
+class Ledge2D(Shape2D):
     """A table that ends at the marker: all that is below its first axis and behind its second one."""
 
-    type: Literal["Ledge2D"] = "Ledge2D"
     marker: Marker2D = Marker2D()
     """At the edge."""
     shown: Positive = 1.0

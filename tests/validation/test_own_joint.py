@@ -9,25 +9,34 @@ from tlismni.core import (
     AppliedForce3D,
     AppliedTorque3D,
     Constant,
+    Distance2D,
     Marker2D,
     Marker3D,
     Model,
     PointMass2D,
     RigidBody3D,
     RotationVector,
+    ScalarForce2D,
     ScalarJoint2D,
     scalar_constraint,
+    scalar_force,
     simulate,
 )
+from tlismni.core.elements.base import Element
 from tlismni.core.elements.dot1_3d import Dot1
 from tlismni.core.elements.dot2_3d import Dot2
 from tlismni.core.elements.joint3d import Joint3D, TurningJoint3D
 from tlismni.core.elements.primitive3d import Primitive
+from tlismni.core.model.open_union import subclasses
 from tlismni.fmu_wrapper.slave import Slave
 from tlismni.validation import NotTranslatable, run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
 from tlismni.viewer import animate
 from tlismni.viewer.build import scene_of_start
+from tlismni.viewer.drawing import interactions
+from tlismni.viewer.drawing.mechanism import draw
+from tlismni.viewer.fixtures import SYMBOLS, stretched, symbol
+from tlismni.viewer.space import fixtures as in_space
 
 MASS, INERTIA, SPIN = 2.0, (0.3, 0.25, 0.4), 4.0
 FORCE, TORQUE, LEVER = 3.0, 0.7, 0.5
@@ -116,6 +125,82 @@ def test_what_exudyn_cannot_hold_is_said() -> None:
     model = Model(bodies=[body], joints=[joint], gravity=(0.0, 0.0, 0.0))
     with pytest.raises(NotTranslatable, match="'askew' is an Askew3D and holds a Dot1"):
         run_exudyn(model, 0.1, 1e-3)
+
+
+# forces, and joints in the plane, from a formula
+
+
+class Stretcher2D(ScalarForce2D):
+    """A spring between two points, whose class says that it looks like one."""
+
+    symbol = "spring"
+    formula = scalar_force(
+        lambda a, b: (b.x - a.x) ** 2 + (b.y - a.y) ** 2,
+        lambda x, rate, stiffness, damping: stiffness * x + damping * rate,
+    )
+    a: Marker2D = Marker2D()
+    b: Marker2D
+    stiffness: float
+    damping: float = 0.0
+
+
+def test_a_force_from_a_formula_is_seen() -> None:
+    bead = PointMass2D(name="bead", mass=0.1, position=(0.5, 0.25))
+    spring = Stretcher2D(name="pull", b=Marker2D(body="bead"), stiffness=3.0)
+    model = Model(bodies=[bead], forces=[spring])
+    (link,) = scene_of_start(model).links
+    assert (link.name, link.kind) == ("pull", "spring")
+    zigzags = [len(draw(m).shapes) for m in (model, Model(bodies=[bead]))]
+    assert zigzags[0] > zigzags[1]
+    (damped,) = scene_of_start(Model(bodies=[bead], forces=[spring.model_copy(update={"damping": 1.0})])).links
+    assert damped.kind == "spring-damper"
+
+
+def test_a_symbol_may_be_drawn_by_its_author() -> None:
+    """A name that nobody knows is not seen; `symbol` says what draws it."""
+
+    class Flag2D(Stretcher2D):
+        symbol = "flag of this test"
+
+    bead = PointMass2D(name="bead", mass=0.1, position=(0.5, 0.25))
+    model = Model(bodies=[bead], forces=[Flag2D(name="flag", b=Marker2D(body="bead"), stiffness=3.0)])
+    assert not scene_of_start(model).links
+
+    @symbol("flag of this test")
+    def _flag(element, stage):
+        stretched(stage, element.name, "rope", element.a, element.b)
+
+    try:
+        (link,) = scene_of_start(model).links
+        assert (link.name, link.kind) == ("flag", "rope")
+    finally:
+        del SYMBOLS["flag of this test"]
+
+
+def test_arrows_are_said_by_the_class() -> None:
+    """Of the same formula one has a tension, which an arrow shows, and one is said to have none."""
+
+    class Tied2D(Distance2D):
+        pass
+
+    class Hidden2D(Distance2D):
+        arrow = "none"
+
+    for kind, shown in ((Tied2D, ["rod"]), (Hidden2D, [])):
+        bead = PointMass2D(name="bead", mass=0.1, position=(0.5, 0.0))
+        joint = kind(name="rod", a=Marker2D(), b=Marker2D(body="bead"), length=0.5)
+        result = simulate(Model(bodies=[bead], joints=[joint]), 0.1)
+        arrows = [arrow for arrow in animate(result).scene.arrows if arrow.kind == "joint"]
+        assert [arrow.name for arrow in arrows] == shown
+
+
+def test_all_symbols_of_the_library_are_known() -> None:
+    """Each class that says a symbol is drawn, in a scene or in drawings."""
+    known = {"none", *SYMBOLS, *interactions.SYMBOLS, *interactions.IN_SPACE, *in_space.SYMBOLS}
+    kinds = [kind for kind in subclasses(Element) if kind.__module__.startswith("tlismni.")]
+    assert len(kinds) > 100
+    assert {kind.symbol for kind in kinds} <= known
+    assert {kind.arrow for kind in kinds} == {"none", "components", "tension", "signals"}
 
 
 # a joint in the plane from a formula

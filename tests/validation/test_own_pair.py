@@ -2,16 +2,22 @@
 
 import logging
 import math
+import os
+import pathlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from own_ledge import DiskOnLedge2D, Ledge2D
 from tlismni.core import (
     Box2D,
+    ContactGroup2D,
     CoulombFriction,
     Disk2D,
     DiskOnBox2D,
     DiskOnPolygon2D,
+    HalfPlane2D,
     KelvinVoigt,
     LuGreFriction,
     Marker2D,
@@ -119,6 +125,63 @@ def test_the_viewer_shows_it(sliding) -> None:
     assert arrow.at[row, 1] == pytest.approx(0.0, abs=1e-6)
     assert arrow.vector[row] == pytest.approx((-MU * MASS * G, MASS * G), rel=1e-6)
     assert any(isinstance(s, Path) and s.closed for s in draw(sliding.system).shapes)
+
+
+def test_it_stands_in_a_group(sliding, tmp_path) -> None:
+    """Beside shapes of the library, from a file too, whose contacts are those that `contacts_between` makes."""
+    alone = sliding.system
+    disk = Disk2D(marker=Marker2D(body="wheel"), radius=RADIUS)
+    high = HalfPlane2D(marker=Marker2D(point=(0.0, 5.0), angle=math.pi))
+    group = ContactGroup2D(
+        name="at", disks=[disk], shapes=[Ledge2D(), high], law=NewtonImpact(restitution=0.0),
+        friction=CoulombFriction(coefficient=MU), pass_through=[("Ledge2D", "HalfPlane2D")],
+    )  # fmt: skip
+    model = Model(bodies=alone.bodies, groups=[group], gravity=alone.gravity)
+    assert [type(contact).__name__ for contact in model.contacts] == ["DiskOnLedge2D", "DiskOnHalfPlane2D"]
+    assert model.contacts[0].model_copy(update={"name": "at_ground_wheel"}) == alone.contacts[0]
+    model.save(tmp_path / "model.json")
+    again = Model.load(tmp_path / "model.json")
+    assert again == model and isinstance(again.groups[0].shapes[0], Ledge2D)
+    result = simulate(again, 0.6, rtol=1e-9, atol=1e-11)
+    assert result["wheel.x"][-1] == pytest.approx(sliding["wheel.x"][-1], abs=1e-9)
+    outline = Ledge2D().outline()
+    parts = animate(result).scene.parts
+    assert any(isinstance(s, Path) and tuple(s.points) == outline for part in parts for s in part.shapes)
+
+
+def test_a_file_says_where_the_shape_is_imported_from(tmp_path) -> None:
+    """Another process reads and runs it, which knows nothing of the ledge."""
+    group = ContactGroup2D(
+        name="at", shapes=[Ledge2D(), Disk2D(marker=Marker2D(body="wheel"), radius=RADIUS)],
+        law=NewtonImpact(restitution=0.0),
+    )  # fmt: skip
+    Model(bodies=[wheel((-1.0, RADIUS))], groups=[group]).save(tmp_path / "model.json")
+    code = (
+        "import sys; from tlismni.core import Model; m = Model.load(sys.argv[1], allow_imports=['own_ledge']);"
+        "print(type(m.groups[0].shapes[0]).__name__, len(m.contacts))"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path / "model.json")]
+    paths = os.pathsep.join([str(pathlib.Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    found = subprocess.run(command, env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True)
+    assert found.stdout.split() == ["Ledge2D", "1"], found.stderr
+
+
+def test_a_shape_of_no_kind_is_refused() -> None:
+    law = {"type": "NewtonImpact", "restitution": 0.0}
+    for shape, words in (({"type": "Legde2D"}, "no type|none of"), ({"type": "Sphere3D"}, "none of")):
+        with pytest.raises(ModelError, match=words):
+            Model(groups=[{"name": "at", "shapes": [shape], "law": law}])
+
+
+def test_a_kind_of_disk_is_a_disk_in_files(tmp_path) -> None:
+    """Contacts hold disks: a subclass without a type of its own is read as one."""
+    group = ContactGroup2D(
+        name="at", disks=[_Coin2D(marker=Marker2D(body="wheel"), radius=RADIUS)], half_planes=[HalfPlane2D()],
+        law=NewtonImpact(restitution=0.0),
+    )  # fmt: skip
+    Model(bodies=[wheel((0.0, RADIUS))], groups=[group]).save(tmp_path / "model.json")
+    (disk,) = Model.load(tmp_path / "model.json").groups[0].disks
+    assert type(disk) is Disk2D and disk.radius == RADIUS
 
 
 def test_an_fmu_runs_it(sliding) -> None:

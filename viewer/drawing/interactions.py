@@ -2,31 +2,14 @@
 
 import math
 import re
-from collections.abc import Sequence
-from functools import singledispatch
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...core.contacts.contact2d import Contact2D, HalfPlane2D
-from ...core.contacts.coordinate_contact import CoordinateContact
-from ...core.contacts.disk_on_line import DiskOnLine2D
+from ...core.contacts.contact2d import HalfPlane2D
 from ...core.elements import (
-    AppliedForce2D,
-    AppliedTorque2D,
-    Bushing2D,
-    Clamp2D,
-    CoordinateDriver,
-    CoordinateLoad,
-    Distance2D,
-    Gear2D,
-    Joint3D,
-    MovingFrame2D,
     PlanarFrame,
-    Prismatic2D,
-    Revolute2D,
-    SpringDamper2D,
-    SpringDamper3D,
 )
-from ...core.model.markers import GROUND
+from ...core.model.markers import GROUND, Marker3D
 from ...core.model.signals import Constant, InputSignal
 from . import symbols
 from .contact_shapes import laid, shapes_of, show
@@ -39,24 +22,41 @@ NEAR = 0.02
 _PLACE = re.compile(r"([xy])\d*$")
 
 
-@singledispatch
+Draw = Callable[[Any, Drawing, Places], None]
+SYMBOLS: dict[str, Draw] = {}
+"""What draws elements of the plane, by their `symbol`."""
+
+
+def symbol(name: str) -> Callable[[Draw], Draw]:
+    """Decorator: the function draws elements of the plane with this symbol."""
+
+    def register(draw: Draw) -> Draw:
+        SYMBOLS[name] = draw
+        return draw
+
+    return register
+
+
 def draw_interaction(element: Any, drawing: Drawing, places: Places) -> None:
-    """Draw a joint, force or contact; what has no symbol stays out of the drawing."""
+    """Draw a joint, force or contact; what has no symbol here stays out of the drawing."""
+    known = IN_SPACE if any(isinstance(marker, Marker3D) for marker in element.markers()) else SYMBOLS
+    draw = known.get(element.symbol)
+    if draw is not None:
+        draw(element, drawing, places)
 
 
 # joints
 
 
-@draw_interaction.register
-def _(element: Revolute2D, drawing: Drawing, places: Places) -> None:
+@symbol("hinge")
+def _hinge(element: Any, drawing: Drawing, places: Places) -> None:
     at = places.at(element.a)
     if GROUND in (element.a.body, element.b.body):
         symbols.bearing(drawing, at)
     symbols.pin(drawing, at)
 
 
-@draw_interaction.register
-def _(element: Joint3D, drawing: Drawing, places: Places) -> None:
+def _joint_in_space(element: Any, drawing: Drawing, places: Places) -> None:
     a, b = places.at(element.a), places.at(element.b)
     if math.dist(a, b) > NEAR * drawing.size:
         drawing.behind.append(Path((a, b), INK, width=0.5))
@@ -66,8 +66,8 @@ def _(element: Joint3D, drawing: Drawing, places: Places) -> None:
     symbols.pin(drawing, a)
 
 
-@draw_interaction.register
-def _(element: Clamp2D, drawing: Drawing, places: Places) -> None:
+@symbol("clamp")
+def _clamp(element: Any, drawing: Drawing, places: Places) -> None:
     at, u = places.at(element.a), 0.05 * drawing.size
     if GROUND in (element.a.body, element.b.body):
         across = turned((0.0, u), places.direction(element.b if element.a.body == GROUND else element.a))
@@ -79,8 +79,8 @@ def _(element: Clamp2D, drawing: Drawing, places: Places) -> None:
         drawing.shapes.append(Path(corners, INK, INK, 0.3, closed=True))
 
 
-@draw_interaction.register
-def _(element: Prismatic2D, drawing: Drawing, places: Places) -> None:
+@symbol("guide")
+def _guide(element: Any, drawing: Drawing, places: Places) -> None:
     at, along = places.at(element.b), turned((1.0, 0.0), places.direction(element.a))
     reach = 0.16 * drawing.size
     drawing.behind.append(Path((moved(at, along, -reach), moved(at, along, reach)), GROUND_COLOUR, width=0.4))
@@ -89,8 +89,8 @@ def _(element: Prismatic2D, drawing: Drawing, places: Places) -> None:
         symbols.wall(drawing, moved(foot, along, -reach), moved(foot, along, reach))
 
 
-@draw_interaction.register
-def _(element: Distance2D, drawing: Drawing, places: Places) -> None:
+@symbol("rod")
+def _rod(element: Any, drawing: Drawing, places: Places) -> None:
     a, b = places.at(element.a), places.at(element.b)
     drawing.behind.append(Path((a, b), INK, width=0.5))
     for marker, at in ((element.a, a), (element.b, b)):
@@ -101,19 +101,19 @@ def _(element: Distance2D, drawing: Drawing, places: Places) -> None:
             symbols.pin(drawing, at)
 
 
-@draw_interaction.register
-def _(element: Gear2D, drawing: Drawing, places: Places) -> None:
+@symbol("gears")
+def _gears(element: Any, drawing: Drawing, places: Places) -> None:
     for marker, radius in ((element.a, element.radius_a), (element.b, element.radius_b)):
         drawing.behind.append(Circle(places.at(marker), abs(radius), INK, width=0.4))
 
 
-@draw_interaction.register
-def _(element: CoordinateDriver, drawing: Drawing, places: Places) -> None:
+@symbol("driver")
+def _driver(element: Any, drawing: Drawing, places: Places) -> None:
     _coordinate(element.body, element.coordinate, _name(element.motion, element.name), drawing, places)
 
 
-@draw_interaction.register
-def _(element: MovingFrame2D, drawing: Drawing, places: Places) -> None:
+@symbol("frame")
+def _frame(element: Any, drawing: Drawing, places: Places) -> None:
     """A frame is seen by what is put on it, and by its motion."""
     for coordinate, motion in zip(("x", "y", "angle"), element.motions(), strict=True):
         if not isinstance(motion, Constant):
@@ -123,19 +123,21 @@ def _(element: MovingFrame2D, drawing: Drawing, places: Places) -> None:
 # forces
 
 
-@draw_interaction.register
-def _(element: SpringDamper2D, drawing: Drawing, places: Places) -> None:
-    symbols.spring(drawing, places.at(element.a), places.at(element.b), element.damping > 0.0, element.stiffness > 0.0)
+@symbol("spring")
+def _spring(element: Any, drawing: Drawing, places: Places) -> None:
+    _spring_in_space(element, drawing, places)
     _anchors(element, drawing, places)
 
 
-@draw_interaction.register
-def _(element: SpringDamper3D, drawing: Drawing, places: Places) -> None:
-    symbols.spring(drawing, places.at(element.a), places.at(element.b), element.damping > 0.0, element.stiffness > 0.0)
+def _spring_in_space(element: Any, drawing: Drawing, places: Places) -> None:
+    """Between its markers, unless it turns a joint."""
+    if getattr(element, "measure", "distance") != "angle":
+        a, b = (places.at(marker) for marker in element.markers()[:2])
+        symbols.spring(drawing, a, b, getattr(element, "damping", 0.0) > 0.0, getattr(element, "stiffness", 1.0) > 0.0)
 
 
-@draw_interaction.register
-def _(element: Bushing2D, drawing: Drawing, places: Places) -> None:
+@symbol("bushing")
+def _bushing(element: Any, drawing: Drawing, places: Places) -> None:
     a, b = places.at(element.a), places.at(element.b)
     if math.dist(a, b) > 0.08 * drawing.size:
         symbols.spring(drawing, a, b, element.damping > 0.0, element.stiffness > 0.0)
@@ -145,7 +147,8 @@ def _(element: Bushing2D, drawing: Drawing, places: Places) -> None:
 
 
 def _anchors(element: Any, drawing: Drawing, places: Places) -> None:
-    for marker, other in ((element.a, element.b), (element.b, element.a)):
+    a, b = element.markers()[:2]
+    for marker, other in ((a, b), (b, a)):
         if marker.body == GROUND:
             at, far = places.at(marker), places.at(other)
             across = turned((0.0, 1.0), math.atan2(far[1] - at[1], far[0] - at[0]))
@@ -153,8 +156,8 @@ def _anchors(element: Any, drawing: Drawing, places: Places) -> None:
             symbols.wall(drawing, moved(at, across, -reach), moved(at, across, reach))
 
 
-@draw_interaction.register
-def _(element: AppliedForce2D, drawing: Drawing, places: Places) -> None:
+@symbol("force")
+def _force(element: Any, drawing: Drawing, places: Places) -> None:
     at = places.at(element.marker)
     angle = places.direction(element.marker) if element.follower else 0.0
     for signal, axis in ((element.force_x, (1.0, 0.0)), (element.force_y, (0.0, 1.0))):
@@ -164,19 +167,20 @@ def _(element: AppliedForce2D, drawing: Drawing, places: Places) -> None:
             drawing.shapes.append(Label(start, _name(signal, element.name), PORT, _side(sign, axis)))
 
 
-@draw_interaction.register
-def _(element: AppliedTorque2D, drawing: Drawing, places: Places) -> None:
-    pinned = [places.at(j.a) for j in places.model.joints if isinstance(j, Revolute2D) and _joins(j, element.body)]
+@symbol("torque")
+def _torque(element: Any, drawing: Drawing, places: Places) -> None:
+    hinges: list[Any] = [joint for joint in places.model.joints if joint.symbol == "hinge"]
+    pinned = [places.at(hinge.a) for hinge in hinges if _joins(hinge, element.body)]
     at = symbols.round_arrow(drawing, pinned[0] if pinned else places.frame(element.body)[0])
     drawing.shapes.append(Label(at, _name(element.torque, element.name), PORT))
 
 
-@draw_interaction.register
-def _(element: CoordinateLoad, drawing: Drawing, places: Places) -> None:
+@symbol("load")
+def _load(element: Any, drawing: Drawing, places: Places) -> None:
     _coordinate(element.body, element.coordinate, _name(element.load, element.name), drawing, places)
 
 
-def _joins(joint: Revolute2D, body: str) -> bool:
+def _joins(joint: Any, body: str) -> bool:
     return {joint.a.body, joint.b.body} == {GROUND, body}
 
 
@@ -222,8 +226,8 @@ def _side(sign: float, axis: Point) -> str:
 # contacts
 
 
-@draw_interaction.register
-def _(element: Contact2D, drawing: Drawing, places: Places) -> None:
+@symbol("shapes")
+def _shapes(element: Any, drawing: Drawing, places: Places) -> None:
     shapes = shapes_of(element)
     for shape in shapes:
         if isinstance(shape, HalfPlane2D):
@@ -241,15 +245,15 @@ def _plane(plane: HalfPlane2D, others: Sequence[Point], drawing: Drawing, places
     symbols.wall(drawing, moved(foot, along, min(ends) - half), moved(foot, along, max(ends) + half), TOUCH)
 
 
-@draw_interaction.register
-def _(element: DiskOnLine2D, drawing: Drawing, places: Places) -> None:
+@symbol("line")
+def _line(element: Any, drawing: Drawing, places: Places) -> None:
     nodes = [places.at(node) for node in element.line.nodes]
     drawing.shapes.append(Path(nodes, TOUCH, width=max(0.6, 200.0 * element.line.radius / drawing.size)))
     _shape(element.disk, drawing, places)
 
 
-@draw_interaction.register
-def _(element: CoordinateContact, drawing: Drawing, places: Places) -> None:
+@symbol("wall")
+def _wall(element: Any, drawing: Drawing, places: Places) -> None:
     """A wall, if the gap is that of one place along x or y."""
     if len(element.terms) != 1 or not element.terms[0].factor:
         return
@@ -270,3 +274,9 @@ def _shape(shape: Any, drawing: Drawing, places: Places) -> None:
     own = Drawing(drawing.size)
     show(shape, own)
     drawing.shapes += laid(own.shapes, places.at(shape.marker), places.direction(shape.marker))
+
+
+JOINTS_IN_SPACE = ("ball", "pin", "cross", "block", "sleeve", "slider", "bead", "pane", "rod", "rolling-sphere",
+                   "rolling-disk")  # fmt: skip
+IN_SPACE: dict[str, Draw] = {**dict.fromkeys(JOINTS_IN_SPACE, _joint_in_space), "spring": _spring_in_space}
+"""The same of those in space."""

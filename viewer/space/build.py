@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ...core.contacts.contact3d import HalfSpace3D
 from ...core.elements import BodyElement, Cable3D, LinearSystem, MaterialPoint3D, PlanarFrame, SpatialFrame
 from ...core.elements.cable_shape import weights
 from ...core.model.base import in_space
@@ -16,7 +17,7 @@ from ..motion import Motion
 from ..scene import SPACE, Band, Field, Floats, Frame, Gauge, Scene
 from ..tracks import Tracks
 from . import meshes
-from .fixtures import add_planes, place
+from .fixtures import add_plane, add_planes, place
 from .forces import add_forces
 from .shapes import add_body, add_shapes, single_balls
 from .stage import Stage3D, pose_of
@@ -50,8 +51,9 @@ def spatial_scene(
     for element in (*model.joints, *model.forces, *model.contacts):
         place(element, stage)
     for group in model.groups:
-        for plane in getattr(group, "half_spaces", ()):
-            place(plane, stage)
+        for shape in group.all_shapes():
+            if isinstance(shape, HalfSpace3D):
+                add_plane(stage, shape.marker)
     stage.shaped |= _shaped(model)
     add_shapes(stage, GROUND)
     for body in model.bodies:

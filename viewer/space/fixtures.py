@@ -1,31 +1,13 @@
 """Joints, forces and planes in space as solids and links."""
 
-from collections.abc import Callable, Mapping
-from functools import singledispatch
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from ...core.contacts.contact3d import Contact3D, HalfSpace3D
-from ...core.contacts.stop3d import DistanceStop3D, Rope3D
-from ...core.elements import (
-    AxialSpring3D,
-    Bushing3D,
-    Gear3D,
-    Joint3D,
-    PIDController3D,
-    RackAndPinion3D,
-    RelativeLoad3D,
-    RollingDisk3D,
-    RollingSphere3D,
-    Screw3D,
-    Servo3D,
-    SpringDamper3D,
-    TableSpring3D,
-    TorsionSpring3D,
-)
-from ...core.elements.cable_clamp3d import CableClamp3D
+from ...core.contacts.contact3d import HalfSpace3D
 from ...core.model.markers import GROUND, Marker3D
+from ..fixtures import kind_of_spring
 from ..scene import Floats
 from . import meshes
 from .colours import BASE, FLOOR, JOINT, WIRE
@@ -39,30 +21,44 @@ FIELDS = 12
 """Of a plane, along its longer edge, about."""
 
 
-@singledispatch
+Draw = Callable[[Any, Stage3D], None]
+SYMBOLS: dict[str, Draw] = {}
+"""What draws elements in space, by their `symbol`. It finds by their names the fields of the element that it needs:
+markers a and b, a radius."""
+
+
+def symbol(name: str) -> Callable[[Draw], Draw]:
+    """Decorator: the function draws elements in space with this symbol."""
+
+    def register(draw: Draw) -> Draw:
+        SYMBOLS[name] = draw
+        return draw
+
+    return register
+
+
 def place(element: Any, stage: Stage3D) -> None:
-    """Put an element into the scene; what has no symbol stays out."""
+    """Put an element in space into the scene; what has no symbol there stays out, as what is of the plane does."""
+    draw = SYMBOLS.get(element.symbol)
+    if draw is not None and all(isinstance(marker, Marker3D) for marker in element.markers()):
+        draw(element, stage)
 
 
-@place.register
-def _(element: Joint3D, stage: Stage3D) -> None:
-    """As its class says that it looks like."""
-    if element.symbol in SYMBOLS:
-        SYMBOLS[element.symbol](element, stage)
-
-
-def _ball(element: Joint3D, stage: Stage3D) -> None:
+@symbol("ball")
+def _ball(element: Any, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
     _support(element, stage)
 
 
-def _pin(element: Joint3D, stage: Stage3D) -> None:
+@symbol("pin")
+def _pin(element: Any, stage: Stage3D) -> None:
     u = stage.size
     stage.solid(element.b, meshes.cylinder(), (PIN * u, PIN * u, 0.08 * u), JOINT)
     _support(element, stage)
 
 
-def _cross(element: Joint3D, stage: Stage3D) -> None:
+@symbol("cross")
+def _cross(element: Any, stage: Stage3D) -> None:
     """The x axis of a, the y axis of b."""
     u = 0.6 * PIN * stage.size
     for marker, along in ((element.a, (1.0, 0.0, 0.0)), (element.b, (0.0, 1.0, 0.0))):
@@ -73,12 +69,13 @@ def _cross(element: Joint3D, stage: Stage3D) -> None:
     _support(element, stage)
 
 
-def _block(element: Joint3D, stage: Stage3D) -> None:
+@symbol("block")
+def _block(element: Any, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.box(), (1.2 * BLOCK * stage.size,) * 3, JOINT)
     _support(element, stage)
 
 
-def _bar(element: Joint3D | Screw3D, stage: Stage3D) -> None:
+def _bar(element: Any, stage: Stage3D) -> None:
     """Along the z axis of a, as long as its way."""
     u = stage.size
     along = np.sum((stage.at(element.b) - stage.at(element.a)) * stage.axes(element.a)[:, :, 2], axis=1)
@@ -87,23 +84,27 @@ def _bar(element: Joint3D | Screw3D, stage: Stage3D) -> None:
     stage.solid(element.a, meshes.cylinder(), (radius, radius, high - low), BASE, shift=(0.0, 0.0, 0.5 * (low + high)))
 
 
-def _sleeve(element: Joint3D | Screw3D, stage: Stage3D) -> None:
+@symbol("sleeve")
+def _sleeve(element: Any, stage: Stage3D) -> None:
     _bar(element, stage)
     stage.solid(element.b, meshes.cylinder(), (BLOCK * stage.size, BLOCK * stage.size, 3.0 * BLOCK * stage.size), JOINT)
 
 
-def _slider(element: Joint3D, stage: Stage3D) -> None:
+@symbol("slider")
+def _slider(element: Any, stage: Stage3D) -> None:
     _bar(element, stage)
     u = BLOCK * stage.size
     stage.solid(element.b, meshes.box(), (2.0 * u, 2.0 * u, 3.0 * u), JOINT)
 
 
-def _bead(element: Joint3D, stage: Stage3D) -> None:
+@symbol("bead")
+def _bead(element: Any, stage: Stage3D) -> None:
     _bar(element, stage)
     stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
 
 
-def _on_pane(element: Joint3D, stage: Stage3D) -> None:
+@symbol("pane")
+def _on_pane(element: Any, stage: Stage3D) -> None:
     """A pane that shines through, where b moves on it."""
     away = stage.at(element.b) - stage.at(element.a)
     local = np.einsum("fi,fij->fj", away, stage.axes(element.a))[:, :2]
@@ -112,76 +113,59 @@ def _on_pane(element: Joint3D, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (KNUCKLE * stage.size,) * 3, JOINT)
 
 
-def _rod(element: Joint3D, stage: Stage3D) -> None:
+@symbol("rod")
+def _rod(element: Any, stage: Stage3D) -> None:
     stage.link(element.name, "rod", element.a, element.b)
     for marker in (element.a, element.b):
         stage.solid(marker, meshes.ball(), (0.7 * KNUCKLE * stage.size,) * 3, JOINT)
     _support(element, stage)
 
 
-SYMBOLS: Mapping[str, Callable[[Joint3D, Stage3D], None]] = {
-    "ball": _ball, "pin": _pin, "cross": _cross, "block": _block, "sleeve": _sleeve, "slider": _slider, "bead": _bead,
-    "pane": _on_pane, "rod": _rod,
-}  # fmt: skip
-
-
-@place.register
-def _(element: Screw3D, stage: Stage3D) -> None:
-    _sleeve(element, stage)
-
-
-@place.register
-def _(element: CableClamp3D, stage: Stage3D) -> None:
+@symbol("clamp")
+def _clamp(element: Any, stage: Stage3D) -> None:
     colour = BASE if element.marker.body == GROUND else JOINT
     stage.solid(element.marker, meshes.box(), (BLOCK * stage.size,) * 3, colour)
 
 
-@place.register
-def _(element: RollingSphere3D, stage: Stage3D) -> None:
+@symbol("rolling-sphere")
+def _rolling_sphere(element: Any, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (element.radius,) * 3)
-    _ground_under(stage, element.a)
+    add_plane(stage, element.a)
 
 
-@place.register
-def _(element: RollingDisk3D, stage: Stage3D) -> None:
+@symbol("rolling-disk")
+def _rolling_disk(element: Any, stage: Stage3D) -> None:
     r = element.radius
     stage.solid(element.b, meshes.cylinder(marked=True), (r, r, max(2.0 * element.rim_radius, 0.06 * r)))
-    _ground_under(stage, element.a)
+    add_plane(stage, element.a)
 
 
-@place.register
-def _(element: Gear3D, stage: Stage3D) -> None:
+@symbol("gears")
+def _gears(element: Any, stage: Stage3D) -> None:
     for marker, radius in ((element.wheel_a, element.radius_a), (element.wheel_b, element.radius_b)):
         r, thick = abs(radius), 0.04 * stage.size
         stage.solid(marker, meshes.cylinder(marked=True), (r, r, thick), opacity=1.0 if radius > 0.0 else 0.3)
 
 
-@place.register
-def _(element: RackAndPinion3D, stage: Stage3D) -> None:
+@symbol("rack")
+def _rack(element: Any, stage: Stage3D) -> None:
     r, u = abs(element.radius), stage.size
     stage.solid(element.wheel, meshes.cylinder(marked=True), (r, r, 0.04 * u))
     stage.solid(element.rack, meshes.box(), (BLOCK * u, BLOCK * u, 6.0 * r), JOINT)
 
 
-@place.register
-def _(element: SpringDamper3D | AxialSpring3D, stage: Stage3D) -> None:
-    damped, stiff = element.damping > 0.0, element.stiffness > 0.0
-    kind = "spring-damper" if damped and stiff else "damper" if damped else "spring"
-    stage.link(element.name, kind, element.a, element.b)
+@symbol("spring")
+def _spring(element: Any, stage: Stage3D) -> None:
+    """Between its markers; about the axis that it turns."""
+    if getattr(element, "measure", "distance") == "angle":
+        _coil(element.a, stage)
+        return
+    stage.link(element.name, kind_of_spring(element), *element.markers()[:2])
     _support(element, stage)
 
 
-@place.register
-def _(element: TableSpring3D, stage: Stage3D) -> None:
-    if element.measure == "angle":
-        _coil(element.a, stage)
-    else:
-        stage.link(element.name, "spring-damper" if element.damping > 0.0 else "spring", element.a, element.b)
-        _support(element, stage)
-
-
-@place.register
-def _(element: Servo3D | PIDController3D | RelativeLoad3D, stage: Stage3D) -> None:
+@symbol("actuator")
+def _actuator(element: Any, stage: Stage3D) -> None:
     """A cylinder between its ends; a drum about the axis that it turns."""
     if element.measure == "angle":
         u = 1.6 * PIN * stage.size
@@ -191,8 +175,8 @@ def _(element: Servo3D | PIDController3D | RelativeLoad3D, stage: Stage3D) -> No
         _support(element, stage)
 
 
-@place.register
-def _(element: TorsionSpring3D, stage: Stage3D) -> None:
+@symbol("coil")
+def _turning_spring(element: Any, stage: Stage3D) -> None:
     _coil(element.a, stage)
 
 
@@ -201,40 +185,35 @@ def _coil(marker: Marker3D, stage: Stage3D) -> None:
     stage.solid(marker, meshes.coil(), (u, u, 0.05 * stage.size), WIRE, shift=(0.0, 0.0, -0.025 * stage.size))
 
 
-@place.register
-def _(element: Bushing3D, stage: Stage3D) -> None:
+@symbol("bushing")
+def _bushing(element: Any, stage: Stage3D) -> None:
     stage.solid(element.b, meshes.ball(), (0.035 * stage.size,) * 3, WIRE, opacity=0.55)
     _support(element, stage)
 
 
-@place.register
-def _(element: Rope3D | DistanceStop3D, stage: Stage3D) -> None:
+@symbol("rope")
+def _rope(element: Any, stage: Stage3D) -> None:
     stage.link(element.name, "rope", element.a, element.b)
     _support(element, stage)
 
 
-@place.register
-def _(element: Contact3D, stage: Stage3D) -> None:
+@symbol("shapes")
+def _shapes(element: Any, stage: Stage3D) -> None:
     """The planes: what touches them is drawn with its body (`shapes.py`)."""
     for shape in element.shapes():
         if isinstance(shape, HalfSpace3D):
-            place(shape, stage)
-
-
-@place.register
-def _(element: HalfSpace3D, stage: Stage3D) -> None:
-    _ground_under(stage, element.marker)
+            add_plane(stage, shape.marker)
 
 
 def _support(element: Any, stage: Stage3D) -> None:
     """A block where something is held by the ground."""
-    for marker in (element.a, element.b):
+    for marker in element.markers()[:2]:
         if marker.body == GROUND:
             edge = 1.5 * BLOCK * stage.size
             stage.solid(Marker3D(point=marker.point), meshes.box(), (edge, edge, edge), BASE)
 
 
-def _ground_under(stage: Stage3D, marker: Marker3D) -> None:
+def add_plane(stage: Stage3D, marker: Marker3D) -> None:
     """A plane, once; it is drawn when all else is there."""
     if marker not in stage.planes:
         stage.planes.append(marker)

@@ -1,15 +1,16 @@
 """Forces in space as arrows: along the normals of contacts, of joints, of applied loads."""
 
 from collections.abc import Callable, Collection
+from typing import Any
 
 import numpy as np
 
 from ...core.contacts.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
 from ...core.contacts.round3d import SmoothOnHalfSpace3D, SphereInSphere3D
 from ...core.contacts.stop3d import Rope3D
-from ...core.elements import AppliedForce3D, Distance3D, Joint3D
-from ...core.model.signals import INPUT_SIZE
-from ..forces import signal_values
+from ...core.elements.base import ForceElement
+from ...core.model.markers import Marker3D
+from ..forces import signals_of
 from ..scene import Floats
 from .rounds import lowest
 from .stage import Stage3D
@@ -29,27 +30,31 @@ def add_forces(stage: Stage3D, values: Values, struck: Collection[str]) -> None:
         found = touch(contact, stage)
         if found is not None:
             stage.arrow(contact.name, "contact", found[0], force[:, None] * found[1])
-    for joint in model.joints:
-        parts = [values(f"{joint.name}.force_{c}") for c in "xyz"]
-        if isinstance(joint, Joint3D) and all(part is not None for part in parts):
-            own = np.stack([part for part in parts if part is not None], axis=1)
-            vector = np.einsum("fij,fj->fi", stage.axes(joint.a), own)
-            stage.arrow(joint.name, "joint", stage.at(joint.b), vector)
-        elif isinstance(joint, Distance3D):
-            tension = values(f"{joint.name}.tension")
-            if tension is not None:
-                pull = _unit(stage.at(joint.a) - stage.at(joint.b))
-                stage.arrow(joint.name, "joint", stage.at(joint.b), tension[:, None] * pull)
-    inputs = {channel.name: k for k, channel in enumerate(model.inputs)}
-    start = np.array([x for channel in model.inputs for x in (channel.start, *[0.0] * (INPUT_SIZE - 1))])
-    for load in model.forces:
-        if isinstance(load, AppliedForce3D):
-            signals = (load.force_x, load.force_y, load.force_z)
-            vector = np.stack([signal_values(s, inputs, start, stage.motion.t) for s in signals], axis=1)
-            if load.follower:
-                vector = np.einsum("fij,fj->fi", stage.axes(load.marker), vector)
-            if np.any(vector != 0.0):
-                stage.arrow(load.name, "load", stage.at(load.marker), vector)
+    for element in (*model.joints, *model.forces):
+        arrow = _arrow(element, stage, values)
+        if arrow is not None:
+            stage.arrow(element.name, "load" if isinstance(element, ForceElement) else "joint", *arrow)
+
+
+def _arrow(element: Any, stage: Stage3D, values: Values) -> tuple[Floats, Floats] | None:
+    """Place and force (F, 3) of the arrow that an element says it has (`Element.arrow`); of those of the plane none."""
+    if not all(isinstance(marker, Marker3D) for marker in element.markers()):
+        return None
+    if element.arrow == "components":
+        parts = [part for part in (values(f"{element.name}.force_{c}") for c in "xyz") if part is not None]
+        if len(parts) < 3:
+            return None
+        return stage.at(element.b), np.einsum("fij,fj->fi", stage.axes(element.a), np.stack(parts, axis=1))
+    if element.arrow == "tension":
+        tension = values(f"{element.name}.tension")
+        a, b = stage.at(element.a), stage.at(element.b)
+        return None if tension is None else (b, tension[:, None] * _unit(a - b))
+    if element.arrow == "signals":
+        vector = signals_of(element, stage.motion.model, stage.motion.t, "xyz")
+        if element.follower:
+            vector = np.einsum("fij,fj->fi", stage.axes(element.marker), vector)
+        return (stage.at(element.marker), vector) if np.any(vector != 0.0) else None
+    return None
 
 
 def touch(contact: object, stage: Stage3D) -> tuple[Floats, Floats] | None:

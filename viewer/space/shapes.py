@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from ...core.contacts.contact3d import Contact3D, Sphere3D
 from ...core.contacts.cornered3d import Box3D, Capsule3D, Cornered3D, Cylinder3D
-from ...core.contacts.group3d import ContactGroup3D
 from ...core.contacts.mesh3d import TriangleMesh3D
 from ...core.contacts.support3d import SmoothShape3D
 from ...core.elements import RigidBody3D, SpatialFrame
@@ -82,7 +82,9 @@ def add_shapes(stage: Stage3D, body: str) -> bool:
     model = stage.motion.model
     shapes = [shape for shape in (*_grouped(model), *_single_shapes(model)) if shape.marker.body == body]
     for shape in shapes:
-        if isinstance(shape, SmoothShape3D):
+        if hasattr(shape, "surface"):
+            stage.solid(shape.marker, meshes.surface(*shape.surface()), (1.0, 1.0, 1.0))
+        elif isinstance(shape, SmoothShape3D):
             stage.solid(shape.marker, smooth_mesh(shape), (1.0, 1.0, 1.0))
         elif isinstance(shape, Cornered3D):
             add_cornered(stage, shape)
@@ -91,16 +93,14 @@ def add_shapes(stage: Stage3D, body: str) -> bool:
     return bool(shapes)
 
 
-def _grouped(model: Model) -> Iterator[Sphere3D | Cornered3D | SmoothShape3D]:
+def _grouped(model: Model) -> Iterator[Any]:
     for group in model.groups:
-        if isinstance(group, ContactGroup3D):
-            yield from group.spheres
-            yield from group.boxes
-            yield from group.polyhedra
-            yield from group.capsules
-            yield from group.cylinders
-            yield from group.meshes
-            yield from group.smooth
+        yield from (shape for shape in group.all_shapes() if isinstance(shape, Sphere3D) or _is_shown(shape))
+
+
+def _is_shown(shape: Any) -> bool:
+    """Whether it is a shape other than a ball that has a look; planes and cables are drawn elsewhere."""
+    return isinstance(shape, Cornered3D | SmoothShape3D) or hasattr(shape, "surface")
 
 
 def _single(model: Model) -> list[Contact3D]:
@@ -109,10 +109,10 @@ def _single(model: Model) -> list[Contact3D]:
     return [c for c in model.contacts if isinstance(c, Contact3D) and c.name not in made]
 
 
-def _single_shapes(model: Model) -> list[Cornered3D | SmoothShape3D]:
+def _single_shapes(model: Model) -> list[Any]:
     """Their shapes other than balls, each once."""
     shapes = [shape for contact in _single(model) for shape in contact.shapes()]
-    found = [shape for shape in shapes if isinstance(shape, Cornered3D | SmoothShape3D)]
+    found = [shape for shape in shapes if _is_shown(shape)]
     return [shape for k, shape in enumerate(found) if shape not in found[:k]]
 
 
