@@ -2,18 +2,13 @@
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
 from ..core.compiled.jit import interpreted
-from ..core.contacts.contact2d import Disk2D, DiskOnDisk2D, DiskOnHalfPlane2D
-from ..core.contacts.coordinate_contact import CoordinateContact
-from ..core.contacts.disk_on_cable import DiskOnCable2D
-from ..core.contacts.disk_on_line import DiskOnLine2D
+from ..core.contacts.contact2d import Disk2D
 from ..core.contacts.scalar_contact2d import ScalarContact2D
-from ..core.contacts.segment2d import DiskOnSegment2D
 from ..core.elements.base import ForceElement
 from ..core.elements.formula2d import Frame2D, argument_names
 from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
@@ -47,7 +42,7 @@ def add_forces(stage: Stage, values: Values, struck: Collection[str]) -> None:
         at, normal = found
         vector = force[:, None] * normal
         friction = values(f"{contact.name}.friction_force")
-        if friction is not None and not isinstance(contact, CoordinateContact):
+        if friction is not None and contact.touch != "coordinate":
             right = np.stack([normal[:, 1], -normal[:, 0]], axis=1)
             vector = vector + _slides_right(contact, stage, right) * friction[:, None] * right
         stage.scene.arrows.append(Arrow(contact.name, "contact", "N", at, vector))
@@ -89,47 +84,62 @@ def signal_values(signal: Signal, inputs: dict[str, int], start: Floats, t: Floa
     return np.array([evaluate(pool, start, 0, float(x))[0] for x in t])
 
 
-@singledispatch
+Find = Callable[[Any, Stage], Touch | None]
+TOUCHES: dict[str, Find] = {}
+"""What finds where contacts of the plane touch, by what their classes say (`ContactElement.touch`)."""
+
+
+def touches(name: str) -> Callable[[Find], Find]:
+    """Decorator: the function finds where contacts of this kind touch, by their fields."""
+
+    def register(find: Find) -> Find:
+        TOUCHES[name] = find
+        return find
+
+    return register
+
+
 def touch(contact: Any, stage: Stage) -> Touch | None:
     """Where a contact touches, and along which normal; None of one without a place in the plane."""
-    return None
+    find = TOUCHES.get(contact.touch)
+    return None if find is None else find(contact, stage)
 
 
-@touch.register
-def _(contact: DiskOnHalfPlane2D, stage: Stage) -> Touch:
+@touches("half-plane")
+def _half_plane(contact: Any, stage: Stage) -> Touch:
     angle = stage.motion.direction(contact.plane.marker) + 0.5 * np.pi
     normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     return stage.motion.at(contact.disk.marker) - contact.disk.radius * normal, normal
 
 
-@touch.register
-def _(contact: DiskOnDisk2D, stage: Stage) -> Touch:
+@touches("disks")
+def _disks(contact: Any, stage: Stage) -> Touch:
     a, b = stage.motion.at(contact.a.marker), stage.motion.at(contact.b.marker)
     normal = _unit(b - a)
     return a + contact.a.radius * normal, normal
 
 
-@touch.register
-def _(contact: DiskOnSegment2D, stage: Stage) -> Touch:
+@touches("segment")
+def _segment(contact: Any, stage: Stage) -> Touch:
     marker = contact.segment.marker
     start, angle = stage.motion.at(marker), stage.motion.direction(marker)
     end = start + contact.segment.length * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     return _nearest(stage, contact.disk, np.stack([start, end], axis=1))
 
 
-@touch.register
-def _(contact: DiskOnLine2D, stage: Stage) -> Touch:
+@touches("line")
+def _line(contact: Any, stage: Stage) -> Touch:
     return _nearest(stage, contact.disk, np.stack([stage.motion.at(node) for node in contact.line.nodes], axis=1))
 
 
-@touch.register
-def _(contact: DiskOnCable2D, stage: Stage) -> Touch | None:
+@touches("cable")
+def _cable(contact: Any, stage: Stage) -> Touch | None:
     bands = [band for band in stage.scene.bands if band.name == contact.cable]
     return _nearest(stage, contact.disk, bands[0].points) if bands else None
 
 
-@touch.register
-def _(contact: CoordinateContact, stage: Stage) -> Touch | None:
+@touches("coordinate")
+def _coordinate(contact: Any, stage: Stage) -> Touch | None:
     """Of the last coordinate with a place; the force on it goes its way if its factor is positive."""
     for term in reversed(contact.terms):
         at = coordinate_place(stage, term.body, term.coordinate)
@@ -139,8 +149,8 @@ def _(contact: CoordinateContact, stage: Stage) -> Touch | None:
     return None
 
 
-@touch.register
-def _(contact: ScalarContact2D, stage: Stage) -> Touch | None:
+@touches("gap")
+def _gap(contact: Any, stage: Stage) -> Touch | None:
     """On the line of action that the gradient of the gap gives: of a disk on its rim, else where that line is nearest
     to the marker that the gap names last; None of one without a direction, such as an angle."""
     last, disk = _last_marker(contact)
@@ -159,7 +169,7 @@ def _(contact: ScalarContact2D, stage: Stage) -> Touch | None:
 
 def _slides_right(contact: Any, stage: Stage, right: Floats) -> float:
     """-1 where the sliding distance of a contact grows against `right` (F, 2), its normals turned by -90 degrees."""
-    if not isinstance(contact, ScalarContact2D) or contact.formula.slide is None:
+    if contact.touch != "gap" or contact.formula.slide is None:
         return 1.0
     rows = np.flatnonzero(np.any(right != 0.0, axis=1))
     rows = rows[:: max(1, len(rows) // FEW)]

@@ -101,6 +101,7 @@ class DiskOnHalfPlane2D(Contact2D):
     """Contact of a disk (or point) with a half-plane: gap = height of the centre over the line - radius."""
 
     type: Literal["DiskOnHalfPlane2D"] = "DiskOnHalfPlane2D"
+    touch: ClassVar[str] = "half-plane"
     kernel: ClassVar[Any] = disk_on_half_plane_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_half_plane_kernel
     bristle_kernel: ClassVar[Any] = bristle_disk_on_half_plane_kernel
@@ -122,6 +123,7 @@ class DiskOnDisk2D(Contact2D):
     """Contact of two disks: gap = distance of the centres - sum of the radii."""
 
     type: Literal["DiskOnDisk2D"] = "DiskOnDisk2D"
+    touch: ClassVar[str] = "disks"
     kernel: ClassVar[Any] = disk_on_disk_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_disk_kernel
     bristle_kernel: ClassVar[Any] = bristle_disk_on_disk_kernel

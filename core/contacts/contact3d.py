@@ -197,6 +197,7 @@ class SphereOnHalfSpace3D(Contact3D):
     """Contact of a sphere (or point) with a half-space: gap = height of the centre over the plane - radius."""
 
     type: Literal["SphereOnHalfSpace3D"] = "SphereOnHalfSpace3D"
+    touch: ClassVar[str] = "half-space"
     kind: ClassVar[int] = PLACE
 
     plane: HalfSpace3D
@@ -215,6 +216,7 @@ class SphereOnSphere3D(Contact3D):
     """Contact of two spheres: gap = distance of the centres - sum of the radii."""
 
     type: Literal["SphereOnSphere3D"] = "SphereOnSphere3D"
+    touch: ClassVar[str] = "spheres"
     kind: ClassVar[int] = DISTANCE
 
     a: Sphere3D

@@ -109,6 +109,7 @@ class CoordinateContact(Contact2D):
 
     type: Literal["CoordinateContact"] = "CoordinateContact"
     symbol: ClassVar[str] = "wall"
+    touch: ClassVar[str] = "coordinate"
     kernel: ClassVar[Any] = coordinate_contact_kernel
     sliding_kernel: ClassVar[Any] = sliding_coordinate_contact_kernel
     bristle_kernel: ClassVar[Any] = bristle_coordinate_contact_kernel

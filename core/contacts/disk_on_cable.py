@@ -29,6 +29,7 @@ class DiskOnCable2D(Contact2D):
     """
 
     type: Literal["DiskOnCable2D"] = "DiskOnCable2D"
+    touch: ClassVar[str] = "cable"
     kernel: ClassVar[Any] = disk_on_cable_kernel
     width: ClassVar[int] = LINE_WIDTH
 

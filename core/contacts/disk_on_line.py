@@ -86,6 +86,7 @@ class DiskOnLine2D(Contact2D):
 
     type: Literal["DiskOnLine2D"] = "DiskOnLine2D"
     symbol: ClassVar[str] = "line"
+    touch: ClassVar[str] = "line"
     kernel: ClassVar[Any] = disk_on_line_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_line_kernel
     bristle_kernel: ClassVar[Any] = bristle_disk_on_line_kernel

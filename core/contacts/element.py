@@ -20,6 +20,9 @@ class ContactElement(Element):
 
     has_shapes: ClassVar[bool] = True
     """False: the friction of a joint."""
+    touch: ClassVar[str] = "none"
+    """Where the arrow of its force is: a name of `viewer/forces.py` or `viewer/space/forces.py`, which find the fields
+    that they need: "half-plane" a `plane` and a `disk`; "gap": where the formula's gradient says; "none": unseen."""
     companion: ClassVar[int] = 0
     """How far on in the tables the contact stands with which it has three tangents together; 0: there is none."""
     surface_sign: ClassVar[float] = 1.0

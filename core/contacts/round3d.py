@@ -27,6 +27,7 @@ class SmoothOnHalfSpace3D(Contact3D):
     """Contact of a smooth convex shape with a half-space, at the point that reaches farthest, which rolls on both."""
 
     type: Literal["SmoothOnHalfSpace3D"] = "SmoothOnHalfSpace3D"
+    touch: ClassVar[str] = "support"
     kind: ClassVar[int] = SUPPORT
 
     plane: HalfSpace3D
@@ -59,6 +60,7 @@ class SphereInSphere3D(Contact3D):
     """Contact of a sphere with the inside of a hollow one: gap = difference of the radii - distance of the centres."""
 
     type: Literal["SphereInSphere3D"] = "SphereInSphere3D"
+    touch: ClassVar[str] = "hollow"
     kind: ClassVar[int] = HOLLOW
 
     hollow: Sphere3D

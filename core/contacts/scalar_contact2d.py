@@ -138,6 +138,8 @@ class ScalarContact2D(Contact2D):
     are those of all contacts; friction needs the sliding distance.
     """
 
+    touch: ClassVar[str] = "gap"
+
     formula: ClassVar[ScalarContact]
 
     def slide_period(self) -> float:

@@ -150,6 +150,7 @@ class DiskOnSegment2D(Contact2D):
     """
 
     type: Literal["DiskOnSegment2D"] = "DiskOnSegment2D"
+    touch: ClassVar[str] = "segment"
     kernel: ClassVar[Any] = disk_on_segment_kernel
     sliding_kernel: ClassVar[Any] = sliding_disk_on_segment_kernel
     bristle_kernel: ClassVar[Any] = bristle_disk_on_segment_kernel

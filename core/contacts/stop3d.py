@@ -185,6 +185,7 @@ class Rope3D(Stop3D):
 
     type: Literal["Rope3D"] = "Rope3D"
     symbol: ClassVar[str] = "rope"
+    touch: ClassVar[str] = "rope"
     measured: ClassVar[int] = DISTANCE
 
     length: Positive

@@ -22,6 +22,7 @@ from tlismni.core import (
     scalar_force,
     simulate,
 )
+from tlismni.core.contacts.element import ContactElement
 from tlismni.core.elements.base import Element
 from tlismni.core.elements.dot1_3d import Dot1
 from tlismni.core.elements.dot2_3d import Dot2
@@ -31,12 +32,13 @@ from tlismni.core.model.open_union import subclasses
 from tlismni.fmu_wrapper.slave import Slave
 from tlismni.validation import NotTranslatable, run_exudyn
 from tlismni.validation.exudyn_import import exudyn_available
-from tlismni.viewer import animate
+from tlismni.viewer import animate, forces
 from tlismni.viewer.build import scene_of_start
 from tlismni.viewer.drawing import interactions
 from tlismni.viewer.drawing.mechanism import draw
 from tlismni.viewer.fixtures import SYMBOLS, stretched, symbol
 from tlismni.viewer.space import fixtures as in_space
+from tlismni.viewer.space import forces as space_forces
 
 MASS, INERTIA, SPIN = 2.0, (0.3, 0.25, 0.4), 4.0
 FORCE, TORQUE, LEVER = 3.0, 0.7, 0.5
@@ -201,6 +203,8 @@ def test_all_symbols_of_the_library_are_known() -> None:
     assert len(kinds) > 100
     assert {kind.symbol for kind in kinds} <= known
     assert {kind.arrow for kind in kinds} == {"none", "components", "tension", "signals"}
+    touches = {kind.touch for kind in kinds if issubclass(kind, ContactElement)}
+    assert touches == {"none", *forces.TOUCHES, *space_forces.TOUCHES}
 
 
 # a joint in the plane from a formula

@@ -5,9 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from ...core.contacts.contact3d import SphereOnHalfSpace3D, SphereOnSphere3D
-from ...core.contacts.round3d import SmoothOnHalfSpace3D, SphereInSphere3D
-from ...core.contacts.stop3d import Rope3D
 from ...core.elements.base import ForceElement
 from ...core.model.markers import Marker3D
 from ..forces import signals_of
@@ -57,26 +54,59 @@ def _arrow(element: Any, stage: Stage3D, values: Values) -> tuple[Floats, Floats
     return None
 
 
-def touch(contact: object, stage: Stage3D) -> tuple[Floats, Floats] | None:
-    """Where a contact touches (F, 3), and the unit normal onto what the force acts on; None of one without a place."""
-    if isinstance(contact, SphereOnHalfSpace3D):
-        normal = stage.axes(contact.plane.marker)[:, :, 2]
-        return stage.at(contact.sphere.marker) - contact.sphere.radius * normal, normal
-    if isinstance(contact, SphereOnSphere3D):
-        a, b = stage.at(contact.a.marker), stage.at(contact.b.marker)
-        normal = _unit(b - a)
-        return a + contact.a.radius * normal, normal
-    if isinstance(contact, SmoothOnHalfSpace3D):
-        normal, marker = stage.axes(contact.plane.marker)[:, :, 2], contact.shape.marker
-        return stage.at(marker) + lowest(contact.shape, stage.axes(marker), normal), normal
-    if isinstance(contact, SphereInSphere3D):
-        a, b = stage.at(contact.hollow.marker), stage.at(contact.sphere.marker)
-        normal = _unit(a - b)
-        return a - contact.hollow.radius * normal, normal
-    if isinstance(contact, Rope3D):
-        a, b = stage.at(contact.a), stage.at(contact.b)
-        return b, _unit(a - b)
-    return None
+Touch = tuple[Floats, Floats]
+"""Places (F, 3) of contact, and unit normals (F, 3) onto what the force acts on."""
+Find = Callable[[Any, Stage3D], Touch]
+TOUCHES: dict[str, Find] = {}
+"""What finds where contacts in space touch, by what their classes say (`ContactElement.touch`)."""
+
+
+def touches(name: str) -> Callable[[Find], Find]:
+    """Decorator: the function finds where contacts of this kind touch, by their fields."""
+
+    def register(find: Find) -> Find:
+        TOUCHES[name] = find
+        return find
+
+    return register
+
+
+def touch(contact: Any, stage: Stage3D) -> Touch | None:
+    """Where a contact touches, and along which normal; None of one without a place."""
+    find = TOUCHES.get(contact.touch)
+    return None if find is None else find(contact, stage)
+
+
+@touches("half-space")
+def _half_space(contact: Any, stage: Stage3D) -> Touch:
+    normal = stage.axes(contact.plane.marker)[:, :, 2]
+    return stage.at(contact.sphere.marker) - contact.sphere.radius * normal, normal
+
+
+@touches("spheres")
+def _spheres(contact: Any, stage: Stage3D) -> Touch:
+    a, b = stage.at(contact.a.marker), stage.at(contact.b.marker)
+    normal = _unit(b - a)
+    return a + contact.a.radius * normal, normal
+
+
+@touches("support")
+def _support(contact: Any, stage: Stage3D) -> Touch:
+    normal, marker = stage.axes(contact.plane.marker)[:, :, 2], contact.shape.marker
+    return stage.at(marker) + lowest(contact.shape, stage.axes(marker), normal), normal
+
+
+@touches("hollow")
+def _hollow(contact: Any, stage: Stage3D) -> Touch:
+    a, b = stage.at(contact.hollow.marker), stage.at(contact.sphere.marker)
+    normal = _unit(a - b)
+    return a - contact.hollow.radius * normal, normal
+
+
+@touches("rope")
+def _rope(contact: Any, stage: Stage3D) -> Touch:
+    a, b = stage.at(contact.a), stage.at(contact.b)
+    return b, _unit(a - b)
 
 
 def _unit(x: Floats) -> Floats:
