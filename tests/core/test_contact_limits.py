@@ -123,6 +123,13 @@ def test_sliding_rod_beyond_the_critical_coefficient_is_refused_at_the_start(ang
     assert result.events[0].kind == "close"
 
 
+@pytest.mark.parametrize("below", [1e-7, 1e-12])
+def test_sliding_rod_just_below_the_critical_coefficient_is_refused_by_name(below):
+    """Forces exist, but are the weight divided by what rounding may have left: 3.6e7 N for 1 kg at 1e-7."""
+    with pytest.raises(SimulationError, match=r"'tip', t = 0 s: Painleve's paradox"):
+        simulate(sliding_rod(0.7, -5.0, mu=critical(0.7) * (1.0 - below)), 1e-3)
+
+
 @pytest.mark.parametrize("method", ["ebdf", "irk", "hht"])
 def test_sliding_rod_that_turns_into_the_critical_angle_is_stopped_by_name(method):
     """Raised by its rate, it reaches the angle at which mu = 1.6 is critical while it still slides: N grows without

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from helpers import events
+from helpers import events, on
 from passages import PASSAGES, lift_offs, shaken_table
-from tlismni.core import simulate
+from tlismni.core import Disk2D, DiskOnDisk2D, Hertz, Model, PointMass2D, simulate
 
 CONTROLLED = [(method, {}) for method in ("ebdf", "bdf", "mebdf", "irk", "hht", "newmark", "adams", "trapezoidal")]
 COMPARED = [(method, {}) for method in ("baumgarte", "hht_i3", "hht_ggl", "generalized_alpha")]
@@ -69,3 +69,19 @@ def test_no_lift_off_of_many_is_missed(method, options):
         assert lost(1e-4, seed, method, options, 10) == []
         assert lost(1e-4, seed, method, options, 10, friction=0.3) == []
     assert lost(1e-6, 0, method, options, 10) == []
+
+
+@pytest.mark.parametrize("method", ["hht", "newmark", "ebdf", "irk"])
+def test_no_step_jumps_over_a_whole_contact_of_stiff_disks(method):
+    """The contact lasts 0.6 ms; a step of 40 ms from its beginning would end where the disks are apart again.
+    Equal masses exchange their velocities."""
+    bodies = [
+        PointMass2D(name=name, mass=1.0, position=(x, 0.0), velocity=(speed, 0.0))
+        for name, x, speed in (("thrown", -1.0, 1.0), ("hit", 0.0, 0.0))
+    ]
+    pair = DiskOnDisk2D(
+        name="pair", a=Disk2D(marker=on("thrown"), radius=0.01), b=Disk2D(marker=on("hit"), radius=0.01),
+        law=Hertz(stiffness=1e9),
+    )  # fmt: skip
+    result = simulate(Model(gravity=(0.0, 0.0), bodies=bodies, contacts=[pair]), 3.0, method)
+    np.testing.assert_allclose(result.v[-1], [0.0, 0.0, 1.0, 0.0], atol=2e-3)

@@ -183,6 +183,22 @@ def test_box_pushed_into_a_corner(mu):
     assert floor + up == pytest.approx(MASS * G, rel=1e-10)
 
 
+def test_a_tall_block_that_slides_trips_over_its_front_foot():
+    """Friction of mu = 2.5 presses its front foot into the floor: no accelerations exist, and the foot stops at once,
+    with the angular momentum about it kept and what the stop has taken in the account."""
+    half, height, speed = 0.2, 1.0, 5.0
+    inertia = (half**2 + height**2) / 3.0
+    body = RigidBody2D(name="b", mass=1.0, inertia=inertia, position=(0.0, height), velocity=(speed, 0.0))
+    contacts = [foot(name, "b", x, -height, 2.5) for name, x in (("front", half), ("rear", -half))]
+    result = simulate(Model(gravity=(0.0, -G), bodies=[body], contacts=contacts), 0.01)
+    about_foot = inertia + half**2 + height**2
+    lost = 0.5 * speed**2 - 0.5 * (height * speed) ** 2 / about_foot
+    (stop,) = events(result, "impact")
+    assert stop.contact == "front" and stop.energy_loss == pytest.approx(lost, rel=1e-9)
+    assert result["energy.impact_loss"][-1] == pytest.approx(lost, rel=1e-9)
+    assert np.abs(result["energy.balance"]).max() < 1e-9
+
+
 @pytest.mark.parametrize("angle", [0.3, 0.7])
 def test_disk_in_a_smooth_wedge_presses_both_sides(angle):
     """N = m g/(2 cos(angle)) on each side of a symmetric wedge."""
