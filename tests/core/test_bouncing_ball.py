@@ -68,6 +68,14 @@ def test_rest_comes_at_the_accumulation_point_within_the_rest_rule(rest_ratio):
     assert len(events(result, "impact")) == bounces
 
 
+def test_without_a_rest_ratio_it_rests_where_bounces_are_lower_than_can_be_told():
+    """Instead of bouncing until the guard against runs without progress speaks; and its event is that of accumulating
+    bounces."""
+    result = simulate(ball_over_floor(NewtonImpact(restitution=E, rest_ratio=0.0)), 5.0)
+    (rest,) = events(result, "rest")
+    assert rest.t == pytest.approx(FALL * (1.0 + E) / (1.0 - E), rel=1e-5)
+
+
 def test_ball_stays_at_rest(bouncing):
     (rest,) = events(bouncing, "rest")
     at_rest = bouncing.t > rest.t
