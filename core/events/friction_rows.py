@@ -21,8 +21,8 @@ from .records import SETTLED, scalars, touching
 from .three_tangents import axis_in_frame, first_of, size_of
 
 RANK_OF_MANY, LOOSEST_RANK = 1e-6, 1e-4
-"""Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and at an instant that
-does not settle. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
+"""Parts of an inverse mass: directions of many contacts that differ by less are taken for one; and where rows still
+repeat each other. To bring rates of rounding's size to zero takes motions larger by one over the root of that."""
 
 
 @internal

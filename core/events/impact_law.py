@@ -199,6 +199,4 @@ def _sequence(instant: Any, drive: Any, workspace: Any) -> int:
         p[k] += second
         for r in range(3 * count):
             v[r] += a[r, i] * one + a[r, j] * first + a[r, k] * second
-        # exactly, so that the same contact is not struck again by rounding
-        v[i] = max(v[i], 0.0)
     return ENDLESS_BLOWS

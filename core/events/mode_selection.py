@@ -29,7 +29,7 @@ from .records import (
     touching,
 )
 from .residual_approach import take_away_left
-from .touching import find_touching, looks_again, read_rates, read_values
+from .touching import find_touching, read_rates, read_values
 
 
 @internal
@@ -63,9 +63,7 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
         contact[i].firmness = 1.0 / math.sqrt(compliance[rows[k]])
         contact[i].kinetic_friction, contact[i].static_friction = friction[k], static[k]
         contact[i].restitution = vec(drive.restitution, workspace.n_contacts)[k]
-        contact[i].comes_to_rest = contact[i].tangent_priority = contact[i].stopping_impulse = contact[
-            i
-        ].stopping_loss = 0.0
+        contact[i].comes_to_rest = contact[i].stopping_impulse = contact[i].stopping_loss = 0.0
         contact[i].least_sliding_speed = (
             vec(drive.rest_ratio, workspace.n_contacts)[k] * rate_size(workspace, k) if crowded else 0.0
         )
@@ -87,8 +85,7 @@ def decide(instant: Any, drive: Any, workspace: Any, method: Any, loop: Any) -> 
     if status != SETTLED:
         return status
     _account_stops(instant, workspace)
-    rank = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
-    scalars(instant).rank_tolerance = min(rank * 100.0 ** max(looks_again(drive) - 2, 0), LOOSEST_RANK)
+    scalars(instant).rank_tolerance = DIRECTION_RANK if count <= MANY else RANK_OF_MANY
     call_part(instant.keep, instant, drive, workspace, method)
     while True:
         status = take_modes(instant, drive, workspace, method)

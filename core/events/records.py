@@ -46,7 +46,6 @@ _PER_CONTACT = (
     "stopping_loss_before",              # J: before the last that stopped
     "direction_cos", "direction_sin",    # direction of sliding, from the first tangent
     "tangent_axis",                      # that angles are counted from (`contacts/frame3d.py`)
-    "tangent_priority",                  # the higher, the earlier its tangent is kept where some repeat others
     "new_slide_mode", "new_ratio",       # what was chosen
     "firmness",                          # one over the root of its relative compliance
     "companion",                         # how far on the contact stands that shares its friction (`three_tangents.py`)
