@@ -18,7 +18,7 @@ from ..state.modes import CLOSED, OF_NORMAL, memories_at
 from ..state.run_records import call_accelerations
 from ..state.workspace_records import OK
 from .rates import read_all_rates, read_level
-from .reading import largest_acceleration
+from .reading import largest_acceleration, unresolved_speed
 from .records import NO_FREE_ACCELERATIONS, SETTLED, scalars, touching
 from .spins import brake_by_spins, read_spins
 from .three_tangents import size_of
@@ -93,7 +93,7 @@ def begin_rest(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
 
 @internal
 def find_free(instant: Any, drive: Any, workspace: Any, accelerations: float) -> int:
-    """Free accelerations, with zero for what is rounding."""
+    """Free accelerations, with zero for what is rounding; gaps that open by less than can be seen are at rest."""
     contact = touching(instant)
     count, n, scale = scalars(instant).count, workspace.n, vec(workspace.scale, workspace.n)
     if call_accelerations(drive.accelerations, workspace) != OK:
@@ -124,4 +124,12 @@ def find_free(instant: Any, drive: Any, workspace: Any, accelerations: float) ->
             of = contact.free_sliding_acceleration2
         k = i % count
         of[k] = 0.0 if abs(of[k]) <= max(none * largest, noise) else of[k]
+    for i in range(count):
+        rate = contact[i].gap_rate
+        if (
+            0.0
+            < rate
+            <= unresolved_speed(workspace, ivec(instant.contacts, instant.most)[i], -contact[i].free_gap_acceleration)
+        ):
+            vec(instant.at_rest, instant.most)[i] = 1.0
     return SETTLED
