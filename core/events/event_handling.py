@@ -39,24 +39,26 @@ UNSEEN = 1e-8
 @internal
 def begin_anew(workspace: Any, method: Any, loop: Any) -> None:
     """A history that begins at the current point, whose accelerations are known."""
-    _know_rates(workspace)
+    _know_rates(workspace, 0)
     restart(workspace, method)
     remember(workspace, loop)
 
 
 @internal
 def _go_on(workspace: Any, method: Any, loop: Any) -> None:
-    """The current point, whose accelerations are known, in place of the newest row."""
-    _know_rates(workspace)
+    """The current point behind a step of impulses in place of the newest row; `aux` has the accelerations of the smooth
+    motion already (`moreau_jean_step.py`)."""
+    _know_rates(workspace, workspace.n)
     replace(workspace, method)
     remember(workspace, loop)
 
 
 @internal
-def _know_rates(workspace: Any) -> None:
+def _know_rates(workspace: Any, first: int) -> None:
+    """Rates of the work accounts; `aux` has the accelerations, from coordinate `first` on."""
     a, aux = vec(workspace.a, workspace.n_ext), vec(workspace.aux, workspace.n_ext)
     evaluate_power(workspace)
-    for i in range(workspace.n_ext):
+    for i in range(first, workspace.n_ext):
         aux[i] = a[i]
     convergence_at(workspace.rate).factor_age = -1.0
 

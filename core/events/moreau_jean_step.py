@@ -32,7 +32,7 @@ from ..state.workspace_records import (
 )
 from .constraint_projection import meet_positions, meet_rates
 from .impulse_rows import BEFORE, OFF, ROW_ARM, ROW_INVERSE, TAKES, P, open_rows, part, prepare_rows, room, rows_of
-from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, scalars, touching
+from .records import NO_ACCELERATIONS, NOT_MET, SETTLED, WANTS_ROOM, call_part, copy, scalars, touching
 from .report import report
 from .row_blocks import blocks_of
 from .touching import find_touching
@@ -83,6 +83,7 @@ def push_apart(instant: Any, drive: Any, workspace: Any, method: Any) -> int:
     _account(instant, workspace, before - energy[0] - energy[1] - energy[2] - lost)
     if call_accelerations(drive.accelerations, workspace) != OK:
         return NO_ACCELERATIONS
+    copy(vec(workspace.aux, workspace.n), vec(workspace.a, workspace.n), workspace.n)
     scalars(instant).touched = scalars(instant).count
     clock.pushed_from, clock.calm = t, 0.0 if changed else clock.calm + 1.0
     if clock.pushes_left <= 0.0 or clock.calm >= max(QUIET, QUIET_PART * clock.pushes):

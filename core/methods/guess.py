@@ -4,6 +4,7 @@ from typing import Any
 
 from ..compiled.jit import internal
 from ..compiled.views import vec
+from ..state.method_records import CARRIES
 from ..state.workspace_records import COUPLED_STAGES
 from .coefficients import extrapolation_weights
 from .history import history_row, history_time
@@ -37,10 +38,17 @@ def _weights(workspace: Any, method: Any, first: int, t: float, h: float) -> int
 
 
 @internal
+def _pushed(method: Any) -> bool:
+    """True if all steps are steps of impulses: accelerations of rows are those of the contacts' mean forces, and `aux`
+    of the newest one has those with which the smooth motion goes on."""
+    return bool(vec(method.parameters, 8)[CARRIES] != 0.0)
+
+
+@internal
 def best_guess(workspace: Any, method: Any, h: float) -> int:
     """Whether velocities or accelerations would have predicted the newest row better: for stiff components, whose
     accelerations are large and noisy, it is the velocities."""
-    if rows_available(method) < 3:
+    if rows_available(method) < 3 or _pushed(method):
         return FROM_ACCELERATIONS
     n = workspace.n_ext
     newest = history_row(workspace, method, 0)
@@ -71,10 +79,14 @@ def _predict(workspace: Any, method: Any, t: float, h: float, guess: int) -> boo
     weights = vec(workspace.scratch + 8 * MOST_ROWS, MOST_ROWS)
     newest = history_row(workspace, method, 0)
     scale, plausible = vec(workspace.scale, workspace.n), True
-    source = n if guess == FROM_VELOCITIES else 2 * n
+    source = n if guess == FROM_VELOCITIES else (3 if _pushed(method) else 2) * n
     for i in range(stages):
         row = rows[i]
-        count = _weights(workspace, method, 0, t + table[VECTORS, NODES + i] * h, h)
+        count = 1
+        if _pushed(method):
+            weights[0] = 1.0
+        else:
+            count = _weights(workspace, method, 0, t + table[VECTORS, NODES + i] * h, h)
         for l in range(workspace.n):
             found = 0.0
             if guess != FROM_REST:

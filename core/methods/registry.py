@@ -166,7 +166,7 @@ METHODS = {
             "Moreau-Jean time stepping: contacts as impulses of fixed steps, without events; order 1, for crowds of "
             "contacts; smooth motion by the implicit midpoint rule",
             {"sweeps": Option(100, 1, 100_000, "sweeps over the contacts of a step, at most", integer=True)},
-            lambda o: replace(_coupled(MIDPOINT), impulses=True, sweeps=int(o["sweeps"])),
+            lambda o: replace(_coupled(MIDPOINT), impulses=True, carries=True, sweeps=int(o["sweeps"])),
             family="time stepping",
         ),
         *COMPARISON_METHODS,
