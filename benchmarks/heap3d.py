@@ -59,8 +59,9 @@ def masses(radii: NDArray[np.float64]) -> NDArray[np.float64]:
     return DENSITY * 4.0 / 3.0 * math.pi * radii**3
 
 
-def our_model(start: Places, rest_ratio: float, rolling: float) -> Model:
-    """The spheres and the box; rolling: arm of the friction against rolling, m, 0: none."""
+def our_model(start: Places, rest_ratio: float, rolling: float, most: int | None = None) -> Model:
+    """The spheres and the box; rolling: arm of the friction against rolling, m, 0: none; most: room for so many
+    contacts at once, None: a contact for each pair."""
     bodies, spheres = [], []
     for k, (centre, radius, mass) in enumerate(zip(*start, masses(start[1]), strict=True)):
         moment = 0.4 * mass * radius**2
@@ -73,7 +74,8 @@ def our_model(start: Places, rest_ratio: float, rolling: float) -> Model:
             point[axis], normal[axis] = place, side
             walls.append((tuple(point), tuple(normal)))
     group = ContactGroup3D(
-        name="heap", spheres=spheres, law=NewtonImpact(restitution=RESTITUTION, rest_ratio=rest_ratio),
+        name="heap", spheres=spheres, most_contacts=most,
+        law=NewtonImpact(restitution=RESTITUTION, rest_ratio=rest_ratio),
         half_spaces=[HalfSpace3D(marker=Marker3D(point=point, attitude=Axes(z=normal))) for point, normal in walls],
         friction=CoulombFriction(coefficient=FRICTION),
         turning=TurningFriction(rolling=rolling, spinning=SPIN * rolling) if rolling else None,
@@ -90,12 +92,13 @@ def overlap(centres: NDArray[np.float64], radii: NDArray[np.float64]) -> float:
 
 
 def run_ours(
-    start: Places, end: float, rest_ratio: float, most: float, rolling: float, method: str, step: float | None
-) -> None:
+    start: Places, end: float, rest_ratio: float, most: float, rolling: float, method: str, step: float | None,
+    contacts: int | None,
+) -> None:  # fmt: skip
     """Run, for `most` seconds of CPU, and print what a demanding reader asks."""
     radii = start[1]
     begun = process_time()
-    sim = Simulation(our_model(start, rest_ratio, rolling), method, step=step)
+    sim = Simulation(our_model(start, rest_ratio, rolling, contacts), method, step=step)
     made, deepest, rests_at, said = process_time() - begun, -math.inf, math.nan, 0.0
     begun = process_time()
     for k in range(1, round(end / OUTPUT) + 1):
@@ -247,6 +250,7 @@ def main() -> None:
     parser.add_argument("--most", type=float, default=300.0, help="s of CPU for ours")
     parser.add_argument("--method", default="ebdf", help="of ours: ebdf, moreau ...")
     parser.add_argument("--step", type=float, help="of ours, s: fixed; left out: as the method has it")
+    parser.add_argument("--contacts", type=int, help="of ours: room for so many at once; left out: one for each pair")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", nargs="+", choices=("mujoco", "exudyn", "ours"), default=("mujoco", "exudyn", "ours"))
     given = parser.parse_args()
@@ -256,7 +260,10 @@ def main() -> None:
     if "exudyn" in given.only:
         run_exudyn(start, given.end)
     if "ours" in given.only:
-        run_ours(start, given.end, given.rest_ratio, given.most, given.rolling, given.method, given.step)
+        run_ours(
+            start, given.end, given.rest_ratio, given.most, given.rolling, given.method, given.step,
+            given.contacts,
+        )  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..compiled.kernels import kernel_address
 from ..contacts.element import ContactElement
 from ..contacts.geometry_kinds import EQUATIONS, kind_of
+from ..contacts.pooled3d import PooledContact3D
 from ..elements.base import Element, Form, Row
 from ..elements.coordinate import Coordinate
 from ..elements.internal import internal_coordinates_kernel
@@ -22,6 +23,7 @@ from ..model.channels import Channel
 from ..model.derived import Derived
 from ..model.motion import InputMotion
 from ..model.outputs import MarkerOutput
+from .contact_pool import ContactPool, pool_of
 from .numbering import AT_REST, NO_START, ModelNumbering
 from .parts import Parts
 
@@ -75,6 +77,8 @@ class ContactInfo:
     """How far on the contact stands with which it has three tangents together; 0: there is none."""
     resists_turning: bool = False
     """Whether it has friction against rolling or spinning."""
+    pooled: bool = False
+    """Whether it is a slot of a pool, which pairs take and leave (`contact_pool.py`)."""
 
     @property
     def coulomb(self) -> CoulombFriction | None:
@@ -132,6 +136,8 @@ class Assembly:
     """Channels that follow from coordinates and multipliers."""
     motions: tuple[InputMotion, ...] = ()
     """Motions that are inputs."""
+    pool: ContactPool | None = None
+    """Pools of contacts; None: there are none."""
     placed: tuple[tuple[int, int], ...] = ()
     """(coordinate, row) pairs: it starts where that row of Phi says, Phi_row = q - f(t)."""
     linear: bool = False
@@ -143,6 +149,11 @@ class Assembly:
     """Called with the workspace that is built from this assembly (user-written equations read its arrays)."""
     user_error: list[BaseException] = field(default_factory=list)
     """An exception that a user's function raised inside the compiled loop."""
+
+    @property
+    def n_slots(self) -> int:
+        """How many contacts are slots of pools."""
+        return 0 if self.pool is None else len(self.pool.contacts)
 
     @property
     def massless_contacts(self) -> frozenset[int]:
@@ -337,6 +348,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
                 has_shapes=c.has_shapes,
                 companion=c.companion,
                 resists_turning=c.resists_turning,
+                pooled=isinstance(c, PooledContact3D),
             )
             for c in contacts
         ],
@@ -355,6 +367,7 @@ def assemble(model: Parts, start: Mapping[str, float] = NO_START, t0: float = 0.
         replaced_rows=_replaced_rows(contacts, massless, batches),
         derived=tuple(derived),
         motions=tuple(numbering.motions),
+        pool=pool_of(contacts, numbering),
         placed=tuple(placed),
         linear=all(element.linear for element in model.elements()),
         n_internal=len(internal),

@@ -22,6 +22,7 @@ class SampleLayout:
         self.work = {name: at + 3 + k for k, name in enumerate(assembly.work_names)}
         at += 3 + len(assembly.work_names)
         self.residuals = (at, at + 1, at + 2)
+        self.slot_pairs = slice(at + 3, at + 3 + assembly.n_slots)
 
 
 def body_coordinate_channels(assembly: Assembly, layout: SampleLayout) -> list[tuple[Channel, int]]:

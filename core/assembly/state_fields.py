@@ -10,6 +10,7 @@ The state of a run is one buffer, a numpy structured scalar. Its fields stand on
     q, v, a   (n_ext,)                 coordinates, velocities and accelerations, with the work accounts
     aux       (n_ext,)                 what Newmark's formula calls its acceleration
     lam       (m_ext,)                 multipliers
+    slot_pair (slots,)                 which pairs have the slots of contact pools (`state/pool_records.py`)
 
 Behind them come those of the formula and of the time loop (`simulation/setup.py`).
 """
@@ -27,7 +28,7 @@ from .assembly import Assembly
 Field = tuple[str, Any, tuple[int, ...]]
 """Name, type and shape."""
 
-STATE_ARRAYS = ("memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam")
+STATE_ARRAYS = ("memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam", "slot_pair")
 
 
 def state_fields(assembly: Assembly) -> list[Field]:
@@ -37,8 +38,11 @@ def state_fields(assembly: Assembly) -> list[Field]:
     shapes = {
         "memory": (max(len(assembly.contacts), 1), MEMORY_SIZE), "inputs": (inputs, INPUT_SIZE),
         "rate": (RATE_SIZE,), "t": (1,), "lam": (m_ext,),
+        "slot_pair": (assembly.n_slots,),
     }  # fmt: skip
-    return [(name, np.float64, shapes.get(name, (n_ext,))) for name in STATE_ARRAYS]
+    return [
+        (name, np.int64 if name == "slot_pair" else np.float64, shapes.get(name, (n_ext,))) for name in STATE_ARRAYS
+    ]
 
 
 def row_length(assembly: Assembly) -> int:

@@ -177,7 +177,7 @@ class Workspace:
                 "n": a.n, "n_ext": n_ext, "m_ext": m_ext, "m_act": 0, "m_held": 0, "n_implied": 0,
                 "n_redundant": 0, "n_free": 0, "n_mass": 0, "n_kernels": len(a.batches), "n_values": 1,
                 "n_basis": 1, "n_contacts": contacts,
-                "n_work": len(a.work_names), "structure": 0, "kept": 0,
+                "n_slots": a.n_slots, "n_work": len(a.work_names), "structure": 0, "kept": 0,
                 "building": self._building.address, "engage": address_of(engage_wanted, ENGAGE_SIGNATURE),
                 "row_length": row_length(a), "part_first": int(constraints_are_cheap(a)),
                 "stage_function": 0, "plain_stage": 0, "n_attitudes": 0, "n_spins": 0,
@@ -204,7 +204,11 @@ class Workspace:
             *(x for name, x in self.arrays.items() if name not in (*_NEVER_CHANGES, "batches")),
         ]
         for batch in self._batches:
-            own += [batch.arrays[name] for name in ("par", "shown") if name in batch.arrays]
+            own += [
+                batch.arrays[name]
+                for name in ("par", "shown", *(("coord",) if self.assembly.pool is not None else ()))
+                if name in batch.arrays
+            ]
         arrays, tables, _ = self.slots.memory()
         records = [
             self._record.words, self._building.words, *(batch.words for batch in self._batches), self.arrays["batches"],

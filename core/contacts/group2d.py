@@ -67,7 +67,10 @@ def contacts_between(
     second = None if others is None else tuple(others)
     count = len(first) * (len(first) - 1) // 2 if second is None else len(first) * len(second)
     if count > MOST_PAIRS:
-        raise ModelError(f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: make smaller groups")
+        raise ModelError(
+            f"group '{name}' has {count} pairs of shapes, more than {MOST_PAIRS}: "
+            "make smaller groups, or give a group of spheres `most_contacts`"
+        )
     pairs = combinations(first, 2) if second is None else product(first, second)
     apart = {frozenset(pair) for pair in except_bodies}
     through = _kinds_apart(name, pass_through, (*first, *(second or ())))

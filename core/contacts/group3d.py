@@ -2,10 +2,14 @@
 
 from typing import Literal
 
+from pydantic import PositiveInt
+
+from ..errors import ModelError
 from ..laws import ContactLaw
 from ..laws.friction import Friction, TurningFriction
 from ..model.base import Name, Positive, Vector3
 from ..model.signals import Signal
+from ..model.words import an
 from .contact2d import Contact2D
 from .contact3d import Contact3D, HalfSpace3D, Sphere3D
 from .cornered3d import Box3D, Capsule3D, ConvexPolyhedron3D, Cylinder3D
@@ -13,6 +17,7 @@ from .group2d import contacts_between
 from .groups import ContactGroup
 from .mesh3d import TriangleMesh3D
 from .on_cable3d import CableLine3D
+from .pooled3d import PooledShapes3D, pooled_contacts
 from .round3d import Smooth3D
 from .shape import AnyShape3D
 
@@ -64,13 +69,38 @@ class ContactGroup3D(ContactGroup):
     """Name of the body whose surface moves, or "ground"; left out: none."""
     compliance: Positive = 1.0
     """How far each of its contacts gives way over how far others do, dimensionless."""
+    most_contacts: PositiveInt | None = None
+    """Room for so many contacts at once, in place of a contact for each pair of shapes: pairs that come near take one
+    and leave it when they part. For many spheres in fixed half-spaces, about eight times as many as there are spheres.
+    The group's channels are sums over all of its contacts. Left out: a contact for each pair."""
 
     def contacts(self) -> tuple[Contact2D | Contact3D, ...]:
         """Its contacts. Raises ModelError as `contacts_between` does, for pairs too that have no contact, such as a
-        box and a cylinder, if `pass_through` does not name them."""
+        box and a cylinder, if `pass_through` does not name them, and with `most_contacts` for shapes that have no
+        pool."""
+        if self.most_contacts is not None:
+            return self._pooled(self.most_contacts)
         return contacts_between(
             self.name, self.all_shapes(), law=self.law, friction=self.friction,
             turning=self.turning, except_bodies=self.except_bodies, pass_through=self.pass_through,
             surface_speed=self.surface_speed, surface_direction=self.surface_direction, surface_body=self.surface_body,
+            compliance=self.compliance,
+        )  # fmt: skip
+
+    def _pooled(self, most: int) -> tuple[Contact3D, ...]:
+        spheres = tuple(shape for shape in self.all_shapes() if isinstance(shape, Sphere3D))
+        half_spaces = tuple(shape for shape in self.all_shapes() if isinstance(shape, HalfSpace3D))
+        others = [
+            an(type(shape).__name__) for shape in self.all_shapes() if not isinstance(shape, Sphere3D | HalfSpace3D)
+        ]
+        if others or self.pass_through or self.surface_speed is not None or self.surface_body is not None:
+            given = others or ["pass_through" if self.pass_through else "a surface that moves"]
+            raise ModelError(
+                f"group '{self.name}' has `most_contacts` and {given[0]}: such a group has spheres and half-spaces "
+                "that are fixed to the ground and do not move; put the others into a group without `most_contacts`"
+            )
+        pool = PooledShapes3D(spheres=spheres, half_spaces=half_spaces, except_bodies=self.except_bodies)
+        return pooled_contacts(
+            self.name, pool, most, law=self.law, friction=self.friction, turning=self.turning,
             compliance=self.compliance,
         )  # fmt: skip

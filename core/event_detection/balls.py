@@ -18,13 +18,21 @@ from .contact_evaluation import probe_of
 IN_SPACE, WHO, SIDE = 7, 8, 9
 BALL_INTEGERS = 10
 """Columns of `ball_coords`: the coordinates of the body that carries the ball, three in the plane and seven in space;
-whether it is of space; a contact that it belongs to, and whether it is its second shape."""
+whether it is of space; a contact that it belongs to (-1: it is a shape of a pool), and whether it is its second
+shape."""
 BALL_POINT, BALL_RADIUS, BALL_REST = 0, 3, 4
 BALL_NUMBERS = 5
 """Columns of `balls`: the centre on its body, the radius, and what is added to the body's first Euler parameter."""
-MARKS = 3
-VALID, PAIRS_FOUND, ORDERED = range(MARKS)
-"""Entries of `broad`: whether the last sweep holds, its number, and whether there is an order of the balls."""
+BALL_MOVES = 7
+CENTRE, SKIN, THICK_SKIN, RELATIVE_WAY, WHOLE_WAY = 0, 3, 4, 5, 6
+"""Columns of `ball_moves`, m: where the centre was at the last sweep; the skins for the way relative to the mean of all
+balls and for the whole way; upper bounds of both ways within the present step."""
+BALL_POLYGON = 15
+"""Columns of `ball_polygons`: differences of the control points of a centre's path within the present step, m."""
+MARKS = 6
+VALID, PAIRS_FOUND, ORDERED, SWEEP_DUE, NEW_PAIRS, WITHOUT_SLOT = range(MARKS)
+"""Entries of `broad`: whether the last sweep holds, its number, whether there is an order of the balls, whether skins
+are too thick, how many pairs that came near have had no slot of their pool yet, and for how many there is none."""
 FEWEST = 24
 """Contacts between balls from which on a sweep pays."""
 SHARED = 2
@@ -43,7 +51,7 @@ def build_balls(assembly: Assembly) -> dict[str, NDArray[Any]]:
     if len(contacts) < max(FEWEST, SHARED * len(unique)):
         keys, contacts, unique, which = keys[:0], contacts[:0], unique[:0], np.zeros(0, dtype=np.int64)
     n, which = len(unique), which.reshape(-1, 2)
-    coords = np.zeros((n, BALL_INTEGERS), dtype=np.int64)
+    coords, pooled = np.zeros((n, BALL_INTEGERS), dtype=np.int64), _pooled(assembly)
     coords[:, : IN_SPACE + 1] = unique[:, : IN_SPACE + 1]
     for side in range(2):
         coords[which[:, side], WHO], coords[which[:, side], SIDE] = contacts, side
@@ -52,13 +60,36 @@ def build_balls(assembly: Assembly) -> dict[str, NDArray[Any]]:
     order = np.lexsort((other, first))
     found = np.full(max(len(assembly.contacts), 1), -1, dtype=np.int64)
     found[contacts] = 0
+    if assembly.pool is not None:
+        found[assembly.pool.contacts] = 0
+    every = n + len(pooled["balls"])
     return {
-        "ball_coords": coords, "balls": np.zeros((n, BALL_NUMBERS)), "ball_moves": np.zeros((n, BALL_NUMBERS)),
-        "ball_reach": np.zeros(n), "ball_order": np.zeros(n, dtype=np.int64),
-        "pair_start": np.searchsorted(first[order], np.arange(n + 1)).astype(np.int64),
+        "ball_coords": np.concatenate([coords, pooled["coords"]]),
+        "balls": np.concatenate([np.zeros((n, BALL_NUMBERS)), pooled["balls"]]),
+        "ball_shape": np.concatenate([np.full(n, -1, dtype=np.int64), pooled["shapes"]]),
+        "ball_moves": np.zeros((every, BALL_MOVES)), "ball_polygons": np.zeros((every, BALL_POLYGON)),
+        "ball_reach": np.zeros(every), "ball_order": np.zeros(every, dtype=np.int64),
+        "pair_start": np.searchsorted(first[order], np.arange(every + 1)).astype(np.int64),
         "pair_other": other[order].astype(np.int64), "pair_contact": contacts[order],
         "pair_turned": turned[order].astype(np.int64), "pair_found": found, "broad": np.zeros(MARKS, dtype=np.int64),
     }  # fmt: skip
+
+
+def _pooled(assembly: Assembly) -> dict[str, NDArray[Any]]:
+    """Balls of the spheres of contact pools."""
+    pool = assembly.pool
+    of = (
+        np.zeros(0, dtype=np.int64)
+        if pool is None
+        else np.flatnonzero((pool.shapes["half_space"] == 0) & (pool.shapes["group"] >= 0))
+    )
+    coords, balls = np.zeros((len(of), BALL_INTEGERS), dtype=np.int64), np.zeros((len(of), BALL_NUMBERS))
+    if pool is not None:
+        shapes = pool.shapes[of]
+        coords[:, :IN_SPACE], coords[:, IN_SPACE], coords[:, WHO] = shapes["coord"], 1, -1
+        balls[:, BALL_POINT : BALL_POINT + 3] = shapes["point"]
+        balls[:, BALL_RADIUS], balls[:, BALL_REST] = shapes["radius"], shapes["rest"]
+    return {"coords": coords, "balls": balls, "shapes": of.astype(np.int64)}
 
 
 def _sides(assembly: Assembly) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -66,7 +97,11 @@ def _sides(assembly: Assembly) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     keys, contacts = [np.zeros((0, IN_SPACE + 1 + BALL_NUMBERS))], [np.zeros(0, dtype=np.int64)]
     massless, alone = assembly.massless_contacts, contacts_alone(assembly)
     for number, batch in enumerate(assembly.batches):
-        here = [(k, e) for k, (x, e, _) in enumerate(alone) if x == number and k not in massless]
+        here = [
+            (k, e)
+            for k, (x, e, _) in enumerate(alone)
+            if x == number and k not in massless and not assembly.contacts[k].pooled
+        ]
         kind = assembly.contacts[here[0][0]].kind if here else -1
         if kind not in (DISKS, SPHERE):
             continue

@@ -15,26 +15,32 @@ import numpy as np
 
 from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, mat, vec
-from ..contacts.gap_motion_bound3d import TURN_BOUND
-from ..methods.history import history_row
+from ..methods.history import history_row, history_time
 from ..state.modes import OPEN, memories_at
+from .ball_motion import no_ways, place_ball, ways_ahead, ways_in_step, within_skins
 from .balls import (
     BALL_INTEGERS,
+    BALL_MOVES,
     BALL_NUMBERS,
-    BALL_POINT,
     BALL_RADIUS,
-    BALL_REST,
     IN_SPACE,
     MARKS,
     ORDERED,
     PAIRS_FOUND,
+    RELATIVE_WAY,
     SIDE,
+    SKIN,
+    SWEEP_DUE,
+    THICK_SKIN,
     VALID,
     WHO,
+    WHOLE_WAY,
+    WITHOUT_SLOT,
     tell_ball,
 )
 from .contact_evaluation import BRACKET, HAPPENS
-from .contact_sleeping import DEEPLY, PLAINLY, show_elements, wake
+from .contact_pool import begin_pairs, bind_new, find_half_spaces, find_pair, write_all_tables
+from .contact_sleeping import AWAKE, DEEPLY, PLAINLY, show_elements, wake
 
 SKIN_WAYS = 4.0
 """A skin is as thick as so many ways that the ball goes in the present step,"""
@@ -43,88 +49,64 @@ SKIN_SIZE = 0.05
 TOO_THICK = 8.0
 """So many times as thick as it would be now: where that are the skins of half the balls, as behind a long step, it is
 time for a sweep."""
-CENTRE, SKIN, GONE = 0, 3, 4
-"""Columns of `ball_moves`: where the centre was at the last sweep, the skin, and the way since then, m."""
-
-
-@internal
-def _way_of_ball(loop: Any, i: int, way: Any) -> float:
-    """An upper bound of how far the centre of ball i goes within the step, m."""
-    c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
-    arm = math.sqrt(x[BALL_POINT] ** 2 + x[BALL_POINT + 1] ** 2 + x[BALL_POINT + 2] ** 2)
-    if c[IN_SPACE] == 0:
-        return float(way[c[0]] + way[c[1]] + arm * way[c[2]])
-    moves = math.sqrt(way[c[0]] ** 2 + way[c[1]] ** 2 + way[c[2]] ** 2)
-    turns = math.sqrt(way[c[3]] ** 2 + way[c[4]] ** 2 + way[c[5]] ** 2 + way[c[6]] ** 2)
-    return float(moves + TURN_BOUND * arm * turns)
-
-
-@internal
-def _skin(loop: Any, i: int, way: float) -> float:
-    """How thick the skin of ball i is, m, that goes this way in a step."""
-    return float(max(SKIN_WAYS * way, SKIN_SIZE * mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i, BALL_RADIUS]))
-
-
-@internal
-def _place(loop: Any, i: int, q: Any, centre: Any) -> None:
-    """Where the centre of ball i is, (3,), m."""
-    c, x = imat(loop.ball_coords, loop.n_balls, BALL_INTEGERS)[i], mat(loop.balls, loop.n_balls, BALL_NUMBERS)[i]
-    u, v, w = x[BALL_POINT], x[BALL_POINT + 1], x[BALL_POINT + 2]
-    centre[0], centre[1], centre[2] = q[c[0]], q[c[1]], 0.0
-    if c[IN_SPACE] == 0:
-        cos, sin = math.cos(q[c[2]]), math.sin(q[c[2]])
-        centre[0] += cos * u - sin * v
-        centre[1] += sin * u + cos * v
-        return
-    centre[2] = q[c[2]]
-    a, b, d, e = x[BALL_REST] + q[c[3]], q[c[4]], q[c[5]], q[c[6]]
-    # u + 2 a (p x u) + 2 p x (p x u), p = (b, d, e)
-    x1, x2, x3 = d * w - e * v, e * u - b * w, b * v - d * u
-    centre[0] += u + 2.0 * (a * x1 + d * x3 - e * x2)
-    centre[1] += v + 2.0 * (a * x2 + e * x1 - b * x3)
-    centre[2] += w + 2.0 * (a * x3 + b * x2 - d * x1)
 
 
 @internal
 def keep_watch(workspace: Any, method: Any, loop: Any) -> None:
     """Have the pairs looked at that could close within the step that ends at the current point, for which `set_travel`
     has been called: where a ball goes beyond its skin there, sweep at the newest row."""
-    if loop.n_balls == 0 or loop.may_sleep == 0:
+    if not _sweeps(loop):
         return
-    way, moves = mat(loop.travel, 2, workspace.n_ext)[0], mat(loop.ball_moves, loop.n_balls, 5)
-    fits = ivec(loop.broad, MARKS)[VALID] != 0
-    for i in range(loop.n_balls):
-        if not fits:
-            break
-        fits = moves[i, GONE] + _way_of_ball(loop, i, way) <= moves[i, SKIN]
-    if not fits:
-        _sweep(workspace, method, loop)
+    start, marks = history_row(workspace, method, 0), ivec(loop.broad, MARKS)
+    ways_in_step(workspace, loop, start, vec(workspace.t, 1)[0] - history_time(method, 0))
+    if marks[VALID] == 0 or marks[SWEEP_DUE] != 0 or not within_skins(loop, start):
+        _sweep(workspace, method, loop, start)
+
+
+@internal
+def _sweeps(loop: Any) -> bool:
+    """Slots of pools are taken even where no contact may sleep."""
+    return bool(loop.n_balls > 0 and (loop.may_sleep != 0 or loop.n_slots > 0))
 
 
 @internal
 def begin_watch(workspace: Any, method: Any, loop: Any, h: float) -> None:
     """Let the pairs sleep that are far from each other, where all are awake, before a step of about h (s)."""
-    if loop.n_balls == 0 or loop.may_sleep == 0 or ivec(loop.broad, MARKS)[VALID] != 0:
+    if not _sweeps(loop) or ivec(loop.broad, MARKS)[VALID] != 0:
         return
-    n, start, way = workspace.n_ext, history_row(workspace, method, 0), mat(loop.travel, 2, workspace.n_ext)[0]
-    for i in range(workspace.n):
-        way[i] = abs(h * start[n + i]) + abs(h * h * start[2 * n + i])
-    _sweep(workspace, method, loop)
+    start = history_row(workspace, method, 0)
+    ways_ahead(workspace, loop, start, h)
+    _sweep(workspace, method, loop, start)
+
+
+@internal
+def begin_pools(workspace: Any, loop: Any) -> None:
+    """Slots for the pairs that are near at the current point, where a run begins."""
+    if loop.n_slots == 0:
+        return
+    write_all_tables(workspace, loop)
+    ivec(loop.broad, MARKS)[WITHOUT_SLOT] = 0
+    no_ways(workspace, loop)
+    _sweep_at(workspace, loop, vec(workspace.q, workspace.n_ext))
+    sleeping = ivec(workspace.sleeping, workspace.n_contacts)
+    for slot in range(loop.n_slots):
+        sleeping[ivec(loop.slot_contact, loop.n_slots)[slot]] = AWAKE
+    ivec(loop.broad, MARKS)[VALID] = 0
 
 
 @internal
 def go_on(workspace: Any, loop: Any) -> None:
     """The step that ends at the current point has been accepted."""
-    if loop.n_balls == 0 or loop.may_sleep == 0 or ivec(loop.broad, MARKS)[VALID] == 0:
+    marks = ivec(loop.broad, MARKS)
+    if not _sweeps(loop) or marks[VALID] == 0:
         return
-    way, moves = mat(loop.travel, 2, workspace.n_ext)[0], mat(loop.ball_moves, loop.n_balls, 5)
+    moves, balls = mat(loop.ball_moves, loop.n_balls, BALL_MOVES), mat(loop.balls, loop.n_balls, BALL_NUMBERS)
     thick = 0
     for i in range(loop.n_balls):
-        goes = _way_of_ball(loop, i, way)
-        moves[i, GONE] += goes
-        thick += 1 if moves[i, SKIN] > TOO_THICK * _skin(loop, i, goes) else 0
+        now = max(SKIN_WAYS * moves[i, RELATIVE_WAY], SKIN_SIZE * balls[i, BALL_RADIUS])
+        thick += 1 if moves[i, SKIN] > TOO_THICK * now else 0
     if 2 * thick > loop.n_balls:
-        moves[0, GONE] = np.inf
+        marks[SWEEP_DUE] = 1
 
 
 @internal
@@ -134,7 +116,9 @@ def _measure(loop: Any) -> None:
     n = loop.n_balls
     coords, balls = imat(loop.ball_coords, n, BALL_INTEGERS), mat(loop.balls, n, BALL_NUMBERS)
     for i in range(n):
-        tell_ball(loop, coords[i, WHO], coords[i, SIDE], coords[i, IN_SPACE], balls[i])
+        # the numbers of a pool's shapes are known from the start
+        if coords[i, WHO] >= 0:
+            tell_ball(loop, coords[i, WHO], coords[i, SIDE], coords[i, IN_SPACE], balls[i])
     start = ivec(loop.pair_start, n + 1)
     others, contacts = ivec(loop.pair_other, start[n]), ivec(loop.pair_contact, start[n])
     turned, other = ivec(loop.pair_turned, start[n]), np.empty(BALL_NUMBERS)
@@ -148,23 +132,55 @@ def _measure(loop: Any) -> None:
 
 
 @internal
-def _sweep(workspace: Any, method: Any, loop: Any) -> None:
-    if ivec(loop.broad, MARKS)[VALID] == 0:
+def _sweep(workspace: Any, method: Any, loop: Any, start: Any) -> None:
+    """Sweep at the newest row; pairs that are found are awake then."""
+    _sweep_at(workspace, loop, start)
+    _choose(workspace, method, loop, ivec(loop.broad, MARKS))
+
+
+@internal
+def _sweep_at(workspace: Any, loop: Any, start: Any) -> None:
+    """Find the pairs that are near at q = start, for the ways that are known of the present step."""
+    marks, n = ivec(loop.broad, MARKS), loop.n_balls
+    if marks[VALID] == 0:
         _measure(loop)
-    n, start = loop.n_balls, history_row(workspace, method, 0)
-    way, moves, balls = (
-        mat(loop.travel, 2, workspace.n_ext)[0],
-        mat(loop.ball_moves, n, 5),
-        mat(loop.balls, n, BALL_NUMBERS),
-    )
-    marks, order, reach = ivec(loop.broad, MARKS), ivec(loop.ball_order, n), vec(loop.ball_reach, n)
+    axis = _place_all(loop, start)
+    # where pools have no room for pairs that could come near in some steps, for those that could in this one
+    for ways in (SKIN_WAYS, 1.0):
+        moves, balls = mat(loop.ball_moves, n, BALL_MOVES), mat(loop.balls, n, BALL_NUMBERS)
+        reach, shape_of = vec(loop.ball_reach, n), ivec(loop.ball_shape, n)
+        for i in range(n):
+            radius = balls[i, BALL_RADIUS]
+            least = SKIN_SIZE * radius if ways > 1.0 else 0.0
+            moves[i, SKIN] = max(ways * moves[i, RELATIVE_WAY], least)
+            moves[i, THICK_SKIN] = max(ways * moves[i, WHOLE_WAY], least)
+            reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
+        _order(loop, axis)
+        marks[PAIRS_FOUND] += 1
+        begin_pairs(loop)
+        for i in range(n):
+            if shape_of[i] >= 0:
+                find_half_spaces(
+                    loop,
+                    i,
+                    moves[i],
+                    (1.0 + PLAINLY) * balls[i, BALL_RADIUS] + moves[i, THICK_SKIN],
+                    marks[PAIRS_FOUND],
+                )
+        _find_pairs(workspace, loop, axis)
+        if bind_new(workspace, loop, marks[PAIRS_FOUND]):
+            break
+        marks[WITHOUT_SLOT] = 1 if ways == 1.0 else 0
+    marks[VALID], marks[SWEEP_DUE] = 1, 0
+
+
+@internal
+def _place_all(loop: Any, start: Any) -> int:
+    """Where the balls are at q = start; the axis along which they differ most."""
+    n, moves = loop.n_balls, mat(loop.ball_moves, loop.n_balls, BALL_MOVES)
     mean, spread = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(n):
-        _place(loop, i, start, moves[i])
-        radius = balls[i, BALL_RADIUS]
-        moves[i, SKIN] = _skin(loop, i, _way_of_ball(loop, i, way))
-        moves[i, GONE] = 0.0
-        reach[i] = (1.0 + PLAINLY) * radius + moves[i, SKIN]
+        place_ball(loop, i, start, moves[i])
         x, y, z = moves[i, 0], moves[i, 1], moves[i, 2]
         mean = (mean[0] + x / n, mean[1] + y / n, mean[2] + z / n)
         spread = (spread[0] + x * x / n, spread[1] + y * y / n, spread[2] + z * z / n)
@@ -172,11 +188,18 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
     for j in range(3):
         if spread[j] - mean[j] * mean[j] > widest:
             widest, axis = spread[j] - mean[j] * mean[j], j
+    return axis
+
+
+@internal
+def _order(loop: Any, axis: int) -> None:
+    """The balls in the order in which they begin along an axis; nearly so since the last time."""
+    n, marks, order = loop.n_balls, ivec(loop.broad, MARKS), ivec(loop.ball_order, loop.n_balls)
+    moves, reach = mat(loop.ball_moves, n, BALL_MOVES), vec(loop.ball_reach, n)
     if marks[ORDERED] == 0:
         for i in range(n):
             order[i] = i
         marks[ORDERED] = 1
-    # nearly in order since the last time
     for p in range(1, n):
         i, at = order[p], p
         low = moves[i, axis] - reach[i]
@@ -184,7 +207,14 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
             order[at] = order[at - 1]
             at -= 1
         order[at] = i
-    marks[PAIRS_FOUND] += 1
+
+
+@internal
+def _find_pairs(workspace: Any, loop: Any, axis: int) -> None:
+    """Sweep over the balls in order."""
+    n, marks, order = loop.n_balls, ivec(loop.broad, MARKS), ivec(loop.ball_order, loop.n_balls)
+    moves, reach = mat(loop.ball_moves, n, BALL_MOVES), vec(loop.ball_reach, n)
+    shape_of = ivec(loop.ball_shape, n)
     for p in range(n):
         i = order[p]
         high = moves[i, axis] + reach[i]
@@ -194,10 +224,12 @@ def _sweep(workspace: Any, method: Any, loop: Any) -> None:
                 break
             both = reach[i] + reach[j]
             dx, dy, dz = moves[i, 0] - moves[j, 0], moves[i, 1] - moves[j, 1], moves[i, 2] - moves[j, 2]
-            if dx * dx + dy * dy + dz * dz <= both * both:
+            if dx * dx + dy * dy + dz * dz > both * both:
+                continue
+            if shape_of[i] < 0 and shape_of[j] < 0:
                 _find(loop, i, j, marks[PAIRS_FOUND], workspace)
-    _choose(workspace, method, loop, marks)
-    marks[VALID] = 1
+            elif shape_of[i] >= 0 and shape_of[j] >= 0:
+                find_pair(loop, shape_of[i], shape_of[j], marks[PAIRS_FOUND])
 
 
 @internal
@@ -226,7 +258,7 @@ def _choose(workspace: Any, method: Any, loop: Any, marks: Any) -> None:
     looked, found, sleeping = ivec(workspace.looked, n + 1), ivec(loop.pair_found, n), ivec(workspace.sleeping, n)
     memory, brackets, count = memories_at(workspace.memory, n), mat(loop.brackets, n, BRACKET), 0
     for k in range(n):
-        near = found[k] < 0 or found[k] == marks[PAIRS_FOUND]
+        near = found[k] < 0 or found[k] == marks[PAIRS_FOUND] or loop.may_sleep == 0
         if near and sleeping[k] == DEEPLY:
             wake(workspace, method, loop, k)
         elif not near and sleeping[k] != DEEPLY and memory[k].mode == OPEN:

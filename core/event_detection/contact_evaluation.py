@@ -19,6 +19,7 @@ from ..compiled.views import imat, ivec, mat, vec
 from ..contacts.geometry_kinds import EQUATIONS, MAY_SLEEP, STOP
 from ..contacts.stop3d import ACCOUNT
 from ..methods.history import history_row, history_time
+from ..state.run_records import clock_at
 
 NEAR_SIZE = 3
 NEAR_KIND, NEAR_KERNEL, SLEEPS = range(NEAR_SIZE)
@@ -288,14 +289,22 @@ def rate_alone(workspace: Any, loop: Any, k: int, row: int, t: float, i: int) ->
 
 
 @internal
+def acceleration_at(workspace: Any, loop: Any) -> int:
+    """Where a row of the history has the accelerations with which smooth motion goes on from it: behind a step of
+    impulses those of the row are of the contacts' mean forces."""
+    pushes = loop.only_impulses != 0 or clock_at(loop.clock).push_step != 0.0
+    return int((3 if pushes else 2) * workspace.n_ext)
+
+
+@internal
 def set_travel(workspace: Any, method: Any, loop: Any, h: float) -> None:
     """Upper bounds of the way that each coordinate goes within the step of size h, and of h times its greatest speed:
     those of its polynomial's control points."""
-    n, start = workspace.n_ext, history_row(workspace, method, 0)
+    n, start, begins = workspace.n_ext, history_row(workspace, method, 0), acceleration_at(workspace, loop)
     q, v, a, travel = vec(workspace.q, n), vec(workspace.v, n), vec(workspace.a, n), mat(loop.travel, 2, n)
     for i in range(workspace.n):
         first, last = 0.2 * h * start[n + i], 0.2 * h * v[i]
-        second, fourth = first + 0.05 * h * h * start[2 * n + i], last - 0.05 * h * h * a[i]
+        second, fourth = first + 0.05 * h * h * start[begins + i], last - 0.05 * h * h * a[i]
         middle = q[i] - start[i] - first - second - fourth - last
         travel[0, i] = abs(first) + abs(second) + abs(middle) + abs(fourth) + abs(last)
         travel[1, i] = 5.0 * max(abs(first), abs(second), abs(middle), abs(fourth), abs(last))

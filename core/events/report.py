@@ -3,8 +3,9 @@
 from typing import Any
 
 from ..compiled.jit import internal
-from ..compiled.views import mat
-from ..state.run_records import EVENT_SIZE, LEFT_APPROACH, UNSHARED_LOAD, counts_at
+from ..compiled.views import ivec, mat
+from ..state.pool_records import NO_PAIR
+from ..state.run_records import EVENT_PAIR, EVENT_SIZE, JUMPS, LEFT_APPROACH, UNSHARED_LOAD, counts_at, loop_at
 from ..state.workspace_records import counters_at
 from .records import scalars
 
@@ -30,6 +31,16 @@ def report(
     counts.events += 1
     row[0], row[1], row[2], row[3], row[4] = t, kind, k, impulse, loss
     row[5], row[6], row[7], row[8] = approach, separation, residual, friction
+    row[EVENT_PAIR] = _pair_of(loop_at(drive.loop), k) if kind != JUMPS else NO_PAIR
+
+
+@internal
+def _pair_of(loop: Any, k: int) -> int:
+    """The pair that has contact k; NO_PAIR: it is no slot of a pool."""
+    if loop.n_slots == 0:
+        return NO_PAIR
+    slot = ivec(loop.contact_slot, k + 1)[k]
+    return int(ivec(loop.slot_pair, loop.n_slots)[slot]) if slot >= 0 else NO_PAIR
 
 
 @internal

@@ -15,7 +15,7 @@ from ..event_detection.contact_evaluation import can_look, gradient_alone
 from ..rounding import COORDINATE_NOISE, GAP_ROUNDING, IMMOVABLE, NO_ACCELERATION, NO_JERK, RATE_ROUNDING
 from ..state.impact_law_codes import AT_MASSLESS, BY_FORCE
 from ..state.modes import CLOSED, STICKS, memories_at
-from ..state.run_records import counts_at
+from ..state.run_records import counts_at, loop_at
 from .records import IMMOVABLE_CONTACT, OF_CONTACTS, SETTLED, delassus, scalars, touching
 
 
@@ -45,7 +45,27 @@ def find_touching(instant: Any, drive: Any, workspace: Any) -> bool:
             contacts[count], touching(instant)[count].companion = k, companion[k]
             count += 1
     scalars(instant).count = count
+    loop = loop_at(drive.loop)
+    if loop.n_slots > 0:
+        _sort_by_pairs(loop, contacts, count)
     return True
+
+
+@internal
+def _sort_by_pairs(loop: Any, contacts: Any, count: int) -> None:
+    """Contacts of pools in the order of their pairs, so that nothing hangs on which slot a pair has taken."""
+    slots, pairs = (
+        ivec(loop.contact_slot, contacts[count - 1] + 1 if count > 0 else 0),
+        ivec(loop.slot_pair, loop.n_slots),
+    )
+    for i in range(1, count):
+        k, at = contacts[i], i
+        if slots[k] < 0:
+            continue
+        while at > 0 and slots[contacts[at - 1]] >= 0 and pairs[slots[contacts[at - 1]]] > pairs[slots[k]]:
+            contacts[at] = contacts[at - 1]
+            at -= 1
+        contacts[at] = k
 
 
 @internal

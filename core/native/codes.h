@@ -23,7 +23,7 @@ enum { NOW, ASKED_TIME, LAST_CHANGE, INTERVAL };        /* columns of `times` */
 enum { UNANSWERED, NOT_DONE, REMEDY_DONE, OTHER_ROWS }; /* `answer` of Counts */
 enum { T0 = 0 };
 enum { FIRST_RATE, SECOND_RATE, RATES_SINCE, RATES_SIZE };
-enum { EVENT_SIZE = 9, GAINS = 7 };
+enum { EVENT_SIZE = 10, GAINS = 7 };
 
 /* failures of steps (state/workspace_records.py) */
 enum { OUTER_DIVERGED = 1, INNER_DIVERGED, SINGULAR, REANALYZE, NOT_FINITE, OUTER_SLOW };

@@ -74,6 +74,11 @@ def _refuse(sim: Any) -> None:
             f"a {type(sim.system).__name__} is made of Python functions, which only Python can call: describe it as a "
             "Model"
         )
+    if assembly.pool is not None:
+        raise NativeError(
+            f"group '{assembly.pool.names[0]}' has `most_contacts`, and which pairs take its contacts is known with "
+            "Python alone: leave it out for a contact for each pair, or use the FMU that runs with Python"
+        )
     if sim.settings.fallback and sim.outer != "newton":
         raise NativeError(
             "which outer loop takes over from another (fallback) is for Python to say: leave fallback out, or use "

@@ -37,6 +37,10 @@ class Table(Protocol):
         """Channels that stand in a sample as they are, with their columns."""
         ...
 
+    def contact_table(self, sample: NDArray[np.float64], group: str) -> NDArray[Any]:
+        """The contacts of a group that carry force in a sample."""
+        ...
+
 
 class Result:
     """What a run has recorded.
@@ -106,6 +110,28 @@ class Result:
     def multipliers(self) -> NDArray[np.float64]:
         """Multipliers (N, m): joints, then one column a contact (zero while it is open)."""
         return self.samples[:, self._table.parts["multipliers"]]
+
+    def contact_table(self, group: str, at: int = -1) -> NDArray[Any]:
+        """The contacts of a group with `most_contacts` that carry force in one sample.
+
+        Parameters
+        ----------
+        group : its name.
+        at : number of the sample; the last one unless given.
+
+        Returns
+        -------
+        A structured array with the fields contact (name of the pair), point (m), normal, gap (m), normal_force (N),
+        friction_force (N) and sliding_velocity (m/s); the normal goes from the first shape, a half-space if there is
+        one, to the second.
+
+        Raises
+        ------
+        UnknownNameError : for a group without `most_contacts`.
+        IndexError : for a sample that there is not.
+        ModelError : of a result that comes from a file.
+        """
+        return self._table.contact_table(self.samples[at], group)
 
     @property
     def steps(self) -> dict[str, NDArray[np.float64]]:

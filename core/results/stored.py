@@ -44,6 +44,13 @@ class StoredTable:
         """Channels that are columns of the run's own samples, with their columns here."""
         return {name: 1 + self.index[name] for name in self._plain}
 
+    def contact_table(self, sample: NDArray[np.float64], group: str) -> NDArray[Any]:
+        """Raises ModelError: files hold channels alone."""
+        raise ModelError(
+            f"this result comes from a file, which has the channels of group '{group}' and no table of its contacts: "
+            "take it from the result of the run"
+        )
+
 
 def load_result(path: str | Path, *, allow_imports: bool | Collection[str] = False) -> Result:
     """A result that `Result.save` has stored, bit for bit.

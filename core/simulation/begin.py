@@ -12,10 +12,12 @@ from ..assembly.levels import position_level, rate_level, rate_size
 from ..assembly.projection import meet
 from ..compiled.jit import internal
 from ..compiled.views import ivec, vec
+from ..event_detection.balls import MARKS, WITHOUT_SLOT
+from ..event_detection.broad_phase import begin_pools
 from ..event_detection.crossings import remember
 from ..events.event_handling import begin_pending_forces
 from ..events.prepare import rank_of
-from ..events.records import REPEATED_ROWS, SETTLED, call_part
+from ..events.records import NO_SLOT, REPEATED_ROWS, SETTLED, call_part
 from ..methods.history import restart
 from ..rounding import RATE_ROUNDING, START_OVERLAP, START_RANK
 from ..stage.accelerations import solve_accelerations
@@ -50,6 +52,9 @@ def start(begin: Any, drive: Any, instant: Any, workspace: Any, method: Any, loo
     """Start with the numbers that the tables have now, as far as contacts with force laws that act: SETTLED, or why it
     cannot. Other contacts that touch are left pending."""
     place(begin, workspace)
+    begin_pools(workspace, loop)
+    if loop.n_slots > 0 and ivec(loop.broad, MARKS)[WITHOUT_SLOT] > 0:
+        return NO_SLOT
     status = _make_consistent(begin, instant, drive, workspace, method)
     if status == SETTLED:
         status = _find_touching(begin, drive, workspace)

@@ -19,6 +19,7 @@ from ..compiled.jit import internal
 from ..compiled.views import imat, ivec, vec
 from ..events.records import SETTLED, WANT_MEMORY
 from ..rounding import CONSTRAINT_TOLERANCES
+from ..state.run_records import loop_at
 from ..state.workspace_records import COUNTERS_SIZE, OK, building_at, call_engage, control_at, structure_at
 from .begin_record import (
     ANGLE_TOLERANCE,
@@ -36,6 +37,9 @@ from .begin_record import (
 )
 from .settings import CONSTRAINT_SHARE, DEFAULT_NEWTON_TOLERANCE, LEAST_EXACTNESS
 from .settings import SPEEDS as SPEED_SHARE
+
+POOLED_SIZE = 2.0
+"""Lengths of the model by which the gap of two bodies changes that move by one each."""
 
 
 @internal
@@ -81,6 +85,21 @@ def measure(begin: Any, drive: Any, workspace: Any) -> int:
 
 
 @internal
+def _set_pooled(begin: Any, drive: Any, workspace: Any, sizes: Any) -> None:
+    """Sizes of the rows of pooled contacts, which nothing moves yet: those of two bodies that move by the model's
+    length against each other."""
+    loop, size = loop_at(drive.loop), POOLED_SIZE * vec(begin.numbers, BEGIN_SIZE)[GIVEN_LENGTH]
+    contacts, rows = ivec(loop.slot_contact, loop.n_slots), ivec(workspace.contact_rows, workspace.n_contacts)
+    first = ivec(workspace.contact_slide_rows, workspace.n_contacts)
+    second = ivec(workspace.contact_second_rows, workspace.n_contacts)
+    for slot in range(loop.n_slots):
+        k = contacts[slot]
+        for row in (rows[k], first[k], second[k]):
+            if row >= 0:
+                sizes[row] = size
+
+
+@internal
 def _measure_scales(begin: Any, drive: Any, workspace: Any) -> float:
     """The scales into `control`, those of rows and of work accounts into their arrays; returns the root of the largest
     mass, kg^0.5 m."""
@@ -97,6 +116,7 @@ def _measure_scales(begin: Any, drive: Any, workspace: Any) -> float:
             sizes[i] = given[i]
     else:
         measure_rows(workspace, scale, sizes)
+        _set_pooled(begin, drive, workspace, sizes)
     for i in range(m):
         row_scale[i] = sizes[i]
     for i in range(n):

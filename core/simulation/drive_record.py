@@ -21,6 +21,7 @@ from ..recovery.compiled_repartition import go_by_impulses, repair_now
 from ..recovery.policy import recover
 from ..stage.accelerations import solve_accelerations
 from ..state.impact_law_codes import code_of
+from ..state.pool_records import NO_PAIR
 from ..state.run_records import (
     ACCELERATIONS_SIGNATURE,
     ACCEPT_SIGNATURE,
@@ -48,6 +49,7 @@ from ..state.run_records import (
 )
 from ..time_loop.drive import (
     aim_now,
+    bind_now,
     drive,
     locate_now,
     open_now,
@@ -125,6 +127,7 @@ class Drive:
     def __init__(self, sim: "Engine", guard: Progress) -> None:
         assembly = sim.assembly
         contacts, self._names = assembly.contacts, [c.name for c in assembly.contacts]
+        self._pool = assembly.pool
         self._told: set[int] = set()
         self._laws = {c.name: type(c.law).__name__ for c in contacts}
         count = max(len(contacts), 1)
@@ -207,6 +210,10 @@ class Drive:
         finally:
             self._record.set_size("trial", own)
 
+    def bind(self) -> None:
+        """Tables for the pairs that have the slots of contact pools (`contact_pool.py`)."""
+        bind_now(self._record.record)
+
     def wake(self) -> None:
         """Let no contact sleep any more (`contact_sleeping.py`)."""
         wake_now(self._record.record)
@@ -277,11 +284,11 @@ class Drive:
         rows: NDArray[np.float64] = self.events[: self.counts.events]
         self.counts.events = 0
         found, gains, jumps, rounds = [], [], [], []
-        for t, kind, k, *numbers in rows.tolist():
+        for t, kind, k, *numbers, pair in rows.tolist():
             if kind == JUMPS:
                 jumps.append((t, self._rows[int(k)], numbers[2]))
                 continue
-            name = self._names[int(k)]
+            name = self._names[int(k)] if pair == NO_PAIR or self._pool is None else self._pool.name_of(int(pair))
             if kind == ROUNDS:
                 rounds.append((t, name))
             elif kind in _TOLD_ONCE:

@@ -16,6 +16,7 @@ from ..events.records import (
     NO_FORCES,
     NO_FREE_ACCELERATIONS,
     NO_IMPACT,
+    NO_SLOT,
     NOT_MET,
     REPEATED_ROWS,
     SINGULAR_JOINTS,
@@ -39,6 +40,8 @@ def failure_of(sim: "ContactSide", status: int) -> SimulationError | Consistency
     t, instant, contacts = sim.t_internal, sim.drive.instant, sim.assembly.contacts
     names = ", ".join(f"'{contacts[k].name}'" for k in instant.touching)
     where = f"t = {t:.9g} s"
+    if status == NO_SLOT:
+        return no_slot(sim)
     if status == SINGULAR_JOINTS:
         return SimulationError(
             f"contact {names}, {where}: the matrix [M Phi_q^T; Phi_q 0] of the joints is singular there (a coordinate "
@@ -82,6 +85,18 @@ def failure_of(sim: "ContactSide", status: int) -> SimulationError | Consistency
     if status == NO_ACCELERATIONS:
         return sim.no_accelerations()
     raise RuntimeError(f"status {status} of an instant is not known")
+
+
+def no_slot(sim: "ContactSide") -> SimulationError:
+    """The error where more pairs of a pool are near than it has slots."""
+    pool = sim.assembly.pool
+    rooms = [] if pool is None else list(zip(pool.names, pool.groups["slots"].tolist(), strict=True))
+    return SimulationError(
+        f"at t = {sim.t_internal:.9g} s more pairs of shapes are near each other than there is room for: "
+        f"{', '.join(f'most_contacts of group {name!r} is {room}' for name, room in rooms)}. Give a larger number",
+        t=sim.t_internal,
+        loop="contact",
+    )
 
 
 def _inconsistent(sim: "ContactSide") -> ConsistencyError:

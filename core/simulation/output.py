@@ -1,7 +1,6 @@
 """Channels: named columns computed from recorded samples."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,11 +9,15 @@ from numpy.typing import NDArray
 from ..assembly.assembly import Assembly, ContactInfo
 from ..assembly.sample_layout import SampleLayout
 from ..compiled.image import twin
+from ..errors import UnknownNameError
 from ..model.channels import Channel, Enumeration
 from ..model.derived import CHANNELS, FIRST_CHANNEL, FIRST_PLACE, NOT_KNOWN, PLACES, Derived, DerivedTable, Places
 from ..model.units import conjugate, per_second, times_second
 from ..state.modes import ACTIVE, CLOSED, MODE_NAMES
+from .channel_formulas import InContact, OneOf, Sum
+from .contact_table import contact_table
 from .exchange_record import ENERGIES, FORCES, MOTION, OF_GROUPS
+from .pool_channels import pool_channels
 
 CONTACT_STATE = Enumeration("ContactState", tuple(MODE_NAMES[mode] for mode in sorted(MODE_NAMES)))
 
@@ -22,49 +25,12 @@ LEVELS = ("position", "velocity", "acceleration")
 """At which constraints are met."""
 
 
-@dataclass(frozen=True)
-class Sum:
-    """A channel that is a sum of columns, less other columns and a constant. It is added up one by one from the left,
-    so that a single sample gives the same bits as a column of many."""
-
-    columns: tuple[int, ...]
-    less: tuple[int, ...] = ()
-    factor: float = 1.0
-    """Of all."""
-
-    def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.zeros(len(samples))
-        for column in self.columns:
-            total += self.factor * samples[:, column]
-        for column in self.less:
-            total -= self.factor * samples[:, column]
-        return total
-
-
-@dataclass(frozen=True)
-class InContact:
-    """A channel that is 1 while the mode in `column` says that the contact carries force."""
-
-    column: int
-
-    def __call__(self, samples: NDArray[np.float64]) -> NDArray[np.float64]:
-        mode = samples[:, self.column]
-        return ((mode == CLOSED) | (mode == ACTIVE)).astype(np.float64)
-
-
-@dataclass(frozen=True)
-class OneOf:
-    """A derived channel: its number among all derived ones, and that of its rate."""
-
-    number: int
-    rate: int
-
-
 class ChannelTable:
     """The output channels of a system and how to compute them."""
 
     def __init__(self, system: Any, assembly: Assembly) -> None:
         self.layout = layout = SampleLayout(assembly)
+        self._pool = assembly.pool
         self.initial_energy = 0.0
         self._formulas: list[tuple[Channel, int | Sum | InContact | OneOf]] = []
         for channel, at in system.coordinate_channels(assembly, layout):
@@ -79,12 +45,16 @@ class ChannelTable:
         for row, channel in assembly.multiplier_channels.items():
             self._formulas.append((channel, layout.multipliers.start + row))
         for k, contact in enumerate(assembly.contacts):
+            if contact.pooled:
+                continue
             self._add_contact(k, contact)
             for index, name in contact.bristles:
                 along = f" along the first marker's {name[-1]} axis" if len(contact.bristles) > 1 else ""
                 text = f"deflection of the friction's bristles{along}"
                 channel = Channel(f"{contact.name}.{name}", contact.units[1], text)
                 self._formulas.append((channel, layout.v.start + index))
+        if assembly.pool is not None:
+            self._formulas += pool_channels(assembly.contacts, assembly.pool, layout)
         self._add_energies(assembly)
         for column, level, unit in zip(layout.residuals, LEVELS, ("m", "m/s", "m/s2"), strict=True):
             text = f"largest constraint violation at {level} level"
@@ -237,6 +207,16 @@ class ChannelTable:
                     layout.sliding + k,
                 ),
             ]
+
+    def contact_table(self, sample: NDArray[np.float64], group: str) -> NDArray[Any]:
+        """The contacts of a group that carry force in a sample. Raises UnknownNameError for a group without a pool."""
+        names = () if self._pool is None else self._pool.names
+        if self._pool is None or group not in names:
+            raise UnknownNameError(
+                f"no group '{group}' has `most_contacts`: those that have are {list(names)}; contacts of other groups "
+                "have channels of their own"
+            )
+        return contact_table(sample, self.layout, self._pool, names.index(group))
 
     def _add_energies(self, assembly: Assembly) -> None:
         layout, contacts = self.layout, len(assembly.contacts)

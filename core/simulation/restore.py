@@ -65,6 +65,11 @@ def _take(sim: "Simulation", parts: Snapshot, events: tuple[Event, ...]) -> None
     if sim.outer != parts.outer:
         sim.use_outer_loop(parts.outer)
     sim.fallbacks = list(parts.fallbacks)
+    if sim.assembly.pool is not None:
+        # structures of the slots as they are bound now are of no use
+        workspace.engage(frozenset(), frozenset())
+        workspace.state["slot_pair"][0] = parts.buffer.view(workspace.state.dtype)["slot_pair"][0]
+        sim.drive.bind()
     if workspace.key != parts.key or workspace.dropped != parts.dropped:
         workspace.drop(parts.dropped)
         workspace.engage(*parts.key)

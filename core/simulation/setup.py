@@ -14,6 +14,7 @@ from ..compiled.records import ArrayRecord
 from ..event_detection.balls import build_balls
 from ..event_detection.contact_evaluation import build_probes
 from ..event_detection.crossings import find_events
+from ..event_detection.pool_tables import build_pool, pool_sizes
 from ..events.progress import GUARD_SIZE
 from ..methods.order_selection import LEAST_K, MOST_K, select_stable_k
 from ..methods.registry import FINE_STARTER, STARTER, Formula
@@ -75,7 +76,7 @@ def build_method(formula: Formula, settings: Settings, assembly: Assembly, state
     parameters[: len(formula.parameters)] = formula.parameters
     if formula.stage is None:
         parameters[PREDICTS] = float(formula.sums_up > 0.0 or formula.embedded)
-    parameters[CARRIES] = float(formula.carries)
+    parameters[CARRIES] = float(formula.carries and impulses == formula.impulses)
     parameters[ESTIMATE] = float(settings.step is None and not impulses)
     if formula.select is select_stable_k and not assembly.has_waves:
         parameters[LEAST_K] = parameters[MOST_K]
@@ -105,7 +106,7 @@ def build_loop(
     `record` : every so many steps a sample; 0: none.
     """
     assembly = workspace.assembly
-    length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names))
+    length = sample_length(assembly.n, assembly.m, len(assembly.contacts), len(assembly.work_names), assembly.n_slots)
     capacity = max(16, min(4096, _LARGEST_BUFFER // length)) if record else 0
     log_capacity = _LOG_ROWS if step_records else 0
     balls = build_balls(assembly)
@@ -123,6 +124,7 @@ def build_loop(
             "leap": assembly.leap,
             **build_probes(workspace),
             **balls,
+            **build_pool(workspace, len(balls["pair_found"])),
             "samples": empty_buffer(max(capacity, 1), length),
             "cursor": np.zeros(1, dtype=np.int64),
             "log": empty_buffer(max(log_capacity, 1), len(LOG_COLUMNS)),
@@ -141,6 +143,7 @@ def build_loop(
             "only_impulses": int(impulses),
             "may_sleep": 0,
             "n_balls": len(balls["balls"]),
+            **pool_sizes(assembly),
             "stride": max(int(record), 1),
             "sample_length": length,
         },

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import ModelError
 from ..events import Event
 
-FORMAT = "tlismni-state-13"
+FORMAT = "tlismni-state-14"
 TYPES = ("<f8", "<i8")
 
 

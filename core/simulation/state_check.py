@@ -18,6 +18,7 @@ from ..recovery.step_division import MOST_HALVINGS
 from ..stage import OUTER_LOOPS
 from ..state.method_records import NEXT_K, K
 from ..state.modes import AT_LIMIT, CLOSED, IDLE, MODE_NAMES, STICKS, contact_memories
+from ..state.pool_records import NO_PAIR
 from ..state.run_records import (
     clock_of,
 )
@@ -72,11 +73,28 @@ def check_state(sim: "Simulation", state: State, own: State) -> None:
     _need_range("dependent", arrays["dependent"], 0, sim.assembly.n - 1)
     _check_factorizations(arrays, {"lu_d": active, "lu_p": held}, active + left_out + sim.assembly.n)
     _check_memory(sim, state)
+    _check_slots(sim, arrays["slot_pair"])
     _check_method(sim, arrays, own.arrays)
     _check_clock(clock_of(arrays["clock"]), clock_of(own.arrays["clock"]))
     newest = _newest_time(arrays)
     t = state.facts["t"]
     _need("t", t <= newest and (arrays["method_ring"][1] < 2 or t >= _time_before(arrays)), f"{t!r} s is not in a step")
+
+
+def _check_slots(sim: "Simulation", pairs: NDArray[np.int64]) -> None:
+    """Which pairs have the slots of contact pools."""
+    pool = sim.assembly.pool
+    if pool is None:
+        return
+    taken = pairs[pairs != NO_PAIR]
+    _need("slot_pair", len(np.unique(taken)) == len(taken), "has a pair twice")
+    _need_range("slot_pair", pairs, NO_PAIR, len(pool.shapes) ** 2)
+    for number, group in enumerate(pool.groups):
+        first = int(group["first_slot"])
+        own = pairs[first : first + int(group["slots"])]
+        ones, others = divmod(own[own != NO_PAIR] - 1, len(pool.shapes))
+        fits = (ones < others) & (pool.shapes["group"][ones] == number) & (pool.shapes["group"][others] == number)
+        _need("slot_pair", bool(np.all(fits)), "has pairs that are none of their group")
 
 
 def _refuse(part: str, text: str) -> None:
@@ -159,9 +177,10 @@ def _check_facts(sim: "Simulation", state: State) -> None:
         for f in fallbacks
     )
     _need("fallbacks", listed, f"is {fallbacks!r}: time, outer loop and reason each")
-    names = [contact.name for contact in assembly.contacts]
+    names = {contact.name for contact in assembly.contacts}
     for event in state.events:
-        known = event.contact in names and isinstance(event.kind, str)
+        pooled = assembly.pool is not None and assembly.pool.has(event.contact)
+        known = (event.contact in names or pooled) and isinstance(event.kind, str)
         _need("events", known and all(map(_number, _numbers_of(event))), f"has {event}")
 
 

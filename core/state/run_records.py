@@ -30,8 +30,13 @@ LOOP = np.dtype(
             # the broad phase (`broad_phase.py`): balls around shapes, where they were at the last sweep, and in which
             # order; by ball the others, the contacts between both, and whether it is their second; the last sweep that
             # has found each contact (-1: it is always looked at)
-            "n_balls", "balls", "ball_coords", "ball_moves", "ball_reach", "ball_order",
+            "n_balls", "balls", "ball_coords", "ball_moves", "ball_polygons", "ball_reach", "ball_order",
             "pair_start", "pair_other", "pair_contact", "pair_turned", "pair_found", "broad",
+            # contact pools (`contact_pool.py`): POOL_SHAPE and POOL_GROUP records, the contact of each slot and the
+            # slot of each contact (-1: none), numbers of the pairs that have the slots and of those that tables hold,
+            # numbers of pairs that never touch, of new ones, a hash table of slots; the shape of each ball (-1: none)
+            "n_slots", "n_shapes", "n_groups", "shapes", "groups", "slot_contact", "contact_slot", "slot_pair",
+            "bound_pair", "n_excluded", "excluded", "new_pairs", "n_hash", "slot_hash", "ball_shape",
             "samples", "capacity", "sample_length",  # buffer of recorded samples; capacity 0: record nothing
             "stride",                           # steps from one recorded sample to the next
             "cursor",                           # (1,) int64: samples in the buffer
@@ -189,8 +194,10 @@ FORCE_NUMBERS = 4
 """Parameters of a force law."""
 # columns of an event
 EVENT_ROWS = 1024
-EVENT_SIZE = 9
-"""Time, kind, contact, and the numbers of `Event` in their order."""
+EVENT_SIZE = 10
+EVENT_PAIR = 9
+"""Time, kind, contact, the numbers of `Event` in their order, and the pair that has the contact, where that is a slot
+of a pool (`pool_records.py`)."""
 IMPACT, GRAZE, REST, CLOSE, OPENS, SLIP, STICK, GAINS, JUMPS, ROUNDS, UNSHARED_LOAD, LEFT_APPROACH = range(12)
 EVENT_KINDS = ("impact", "graze", "rest", "close", "open", "slip", "stick")
 """Those of `Event`. GAINS is none: an impact of several contacts, each of which has such a line, has raised the

@@ -52,6 +52,8 @@ WORKSPACE = np.dtype(
             # (n_spins, SPIN_SIZE), and the history in these; and the function that solves their stages in space
             # ; kernel and element of the inertia that turns with them, (n_attitudes, 2) int64, -1 where there is more
             "n_attitudes", "attitudes", "attitude_bodies", "n_spins", "spinning", "spin", "turned", "plain_stage",
+            # (n_slots,) int64: the pairs that have the slots of contact pools (`pool_records.py`)
+            "n_slots", "slot_pair",
             # force that the stages of comparison methods subtract from r: (n_ext,)
             "offset",
         )

@@ -11,14 +11,16 @@ import numpy as np
 
 from ..compiled.jit import compiled, compiled_unlocked, internal, record_view
 from ..compiled.views import ivec, vec
+from ..event_detection.balls import MARKS, WITHOUT_SLOT
 from ..event_detection.broad_phase import begin_watch
+from ..event_detection.contact_pool import write_all_tables
 from ..event_detection.contact_sleeping import wake_all
 from ..event_detection.event_search import locate
 from ..event_detection.repivoting import orientation
 from ..events.event_handling import go_on_behind, settle
 from ..events.inconsistent_modes import find_unsettled
 from ..events.moved_surfaces import find_moved
-from ..events.records import DECLINED, SETTLED, WANT_MEMORY, call_part, instant_at
+from ..events.records import DECLINED, NO_SLOT, SETTLED, WANT_MEMORY, call_part, instant_at
 from ..events.zeno import only_impulses, without_impulse
 from ..methods.history import history_time, recall
 from ..rounding import NO_STEP
@@ -96,7 +98,8 @@ def drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool) -> 
     while code == OK:
         loop.may_sleep = 1 if workspace.n_contacts >= MANY else 0
         clock = clock_at(loop.clock)
-        begin_watch(workspace, method, loop, max(clock.step_size, clock.push_step))
+        h = clock.fixed_step if clock.fixed_step > 0.0 else max(clock.step_size, clock.push_step)
+        begin_watch(workspace, method, loop, h)
         code = _drive_on(drive, workspace, method, loop, hold, last)
         loop.may_sleep = 0
         # whoever builds what is wanted does not look at gaps, and comes back at once
@@ -112,6 +115,9 @@ def _drive_on(drive: Any, workspace: Any, method: Any, loop: Any, hold: bool, la
     counts, steps = counts_at(drive.counts), counters_at(workspace.counters)
     side = 0.0  # the sign of a determinant at the newest row, while contacts slide; 0: not looked at yet
     while True:
+        if loop.n_slots > 0 and ivec(loop.broad, MARKS)[WITHOUT_SLOT] > 0:
+            counts.status = NO_SLOT
+            return FAILED
         if is_due(drive, workspace):
             side = 0.0
             # which redundant rows are left out is for Python to look at, at every instant; steps of impulses take those
@@ -193,6 +199,12 @@ def drive(drive: Any, hold: bool) -> int:
 def aim_now(drive: Any) -> int:
     """`_aim`, for Python."""
     return _aim(drive, method_at(drive.method), loop_at(drive.loop))
+
+
+@compiled
+def bind_now(drive: Any) -> None:
+    """Tables for the pairs that have the slots of contact pools in the state that has been taken."""
+    write_all_tables(workspace_at(drive.workspace), loop_at(drive.loop))
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 Columns: t; q, v, a (n each); lam (m); force, gap, gap rate, mode, impact impulse, impact loss, friction force and
 sliding velocity of each contact; kinetic, potential, strain energy; work accounts; residuals at position, velocity and
-acceleration level.
+acceleration level; the pair of each slot of contact pools.
 """
 
 from typing import Any
@@ -17,9 +17,9 @@ from ..event_detection.joint_loads import share_joint_loads
 from ..state.modes import ACTIVE, AT_ZERO_FORCE, CLOSED, OPEN, memories_at
 
 
-def sample_length(n: int, m: int, contacts: int, work: int) -> int:
+def sample_length(n: int, m: int, contacts: int, work: int, slots: int) -> int:
     """Number of columns."""
-    return 1 + 3 * n + m + 8 * contacts + 3 + work + 3
+    return 1 + 3 * n + m + 8 * contacts + 3 + work + 3 + slots
 
 
 @compiled
@@ -93,6 +93,9 @@ def write_row(workspace: Any, out: Any, energies: bool) -> None:
     out[at] = recorded_norm(workspace, workspace.phi)
     out[at + 1] = recorded_norm(workspace, workspace.phid)
     out[at + 2] = recorded_norm(workspace, workspace.phidd)
+    pairs = ivec(workspace.slot_pair, workspace.n_slots)
+    for slot in range(workspace.n_slots):
+        out[at + 3 + slot] = pairs[slot]
 
 
 @internal

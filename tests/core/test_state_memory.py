@@ -11,9 +11,9 @@ def test_state_is_one_buffer_without_gaps(name):
     sim = Simulation(load(name).model)
     buffer = sim.workspace.state
     assert set(buffer.dtype.names) == {
-        "memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam", "method_history", "method_times",
-        "method_ring", "method_parameters", "method_weights", "method_error", "method_choice", "clock", "watch",
-        "guard",
+        "memory", "inputs", "rate", "t", "q", "v", "a", "aux", "lam", "slot_pair", "method_history",
+        "method_times", "method_ring", "method_parameters", "method_weights", "method_error", "method_choice",
+        "clock", "watch", "guard",
     }  # fmt: skip
     at = 0
     for field in buffer.dtype.names:
