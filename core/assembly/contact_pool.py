@@ -57,6 +57,20 @@ class ContactPool:
         return False
 
 
+def same_pools(a: ContactPool | None, b: ContactPool | None) -> bool:
+    """True if two pools differ in numbers only."""
+    if a is None or b is None:
+        return a is b
+    same = a.names == b.names and a.bodies == b.bodies and len(a.shapes) == len(b.shapes)
+    same = same and np.array_equal(a.groups, b.groups) and np.array_equal(a.contacts, b.contacts)
+    fields = ("coord", "half_space", "group", "body")
+    return (
+        same
+        and np.array_equal(a.excluded, b.excluded)
+        and all(np.array_equal(a.shapes[name], b.shapes[name]) for name in fields)
+    )
+
+
 def pool_of(contacts: Sequence[ContactElement], numbering: Numbering) -> ContactPool | None:
     """The pools that the slots among the contacts belong to; None: there are none."""
     first_slots = [(k, c) for k, c in enumerate(contacts) if isinstance(c, PooledContact3D) and c.slot == 0]

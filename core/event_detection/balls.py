@@ -1,5 +1,6 @@
 """Which balls the broad phase sweeps over, and which contacts are between two of them."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -62,7 +63,7 @@ def build_balls(assembly: Assembly) -> dict[str, NDArray[Any]]:
     found[contacts] = 0
     if assembly.pool is not None:
         found[assembly.pool.contacts] = 0
-    every = n + len(pooled["balls"])
+    every = n + len(pooled["balls"])  # those of pools come last, as `take_pool_numbers` expects
     return {
         "ball_coords": np.concatenate([coords, pooled["coords"]]),
         "balls": np.concatenate([np.zeros((n, BALL_NUMBERS)), pooled["balls"]]),
@@ -90,6 +91,13 @@ def _pooled(assembly: Assembly) -> dict[str, NDArray[Any]]:
         balls[:, BALL_POINT : BALL_POINT + 3] = shapes["point"]
         balls[:, BALL_RADIUS], balls[:, BALL_REST] = shapes["radius"], shapes["rest"]
     return {"coords": coords, "balls": balls, "shapes": of.astype(np.int64)}
+
+
+def take_pool_numbers(arrays: Mapping[str, NDArray[Any]], assembly: Assembly) -> None:
+    """Points and radii of the spheres of contact pools, of another assembly of the same tables, to the record's
+    arrays."""
+    own = _pooled(assembly)["balls"]
+    arrays["balls"][len(arrays["balls"]) - len(own) :] = own
 
 
 def _sides(assembly: Assembly) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -1,5 +1,6 @@
 """The arrays of the loop's record that contact pools need (`contact_pool.py`)."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from ..assembly.assembly import Assembly
 from ..assembly.workspace import Workspace
 from ..state.pool_records import NO_PAIR, POOL_GROUP, POOL_SHAPE
+from .balls import take_pool_numbers
 
 
 def build_pool(workspace: Workspace, count: int) -> dict[str, NDArray[Any]]:
@@ -24,6 +26,16 @@ def build_pool(workspace: Workspace, count: int) -> dict[str, NDArray[Any]]:
         "excluded": np.zeros(0, dtype=np.int64) if pool is None else pool.excluded.copy(),
         "new_pairs": np.zeros(slots, dtype=np.int64), "slot_hash": np.zeros(_hash_size(slots), dtype=np.int64),
     }  # fmt: skip
+
+
+def take_pool(arrays: Mapping[str, NDArray[Any]], assembly: Assembly) -> None:
+    """The shapes of another assembly of the same tables, which may differ in numbers, for a run that has not begun."""
+    if assembly.pool is None:
+        return
+    arrays["shapes"][:] = _words(assembly.pool.shapes)
+    arrays["slot_pair"][:] = NO_PAIR
+    arrays["bound_pair"][:] = NO_PAIR
+    take_pool_numbers(arrays, assembly)
 
 
 def pool_sizes(assembly: Assembly) -> dict[str, int]:

@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..assembly.assembly import Assembly
+from ..assembly.contact_pool import same_pools
 from ..compiled.image import Image, twin
 from ..compiled.records import ArrayRecord
 from ..errors import ModelError
+from ..event_detection.pool_tables import take_pool
 from .simulation import Simulation
 
 _BLANK = ("samples", "log", "events")
@@ -97,6 +99,7 @@ def take_numbers(sim: Simulation, system: Any, assembly: Assembly) -> None:
     sim.workspace.take_numbers(assembly)
     sim.drive.take_numbers(assembly)
     sim._loop.arrays["leap"][:] = assembly.leap
+    take_pool(sim._loop.arrays, assembly)
     sim.clock.max_step = min(sim.settings.max_step or np.inf, assembly.longest_step)
     sim.table = sim.table.moved(assembly)
     sim.__dict__.pop("model_hash", None)
@@ -127,6 +130,8 @@ def what_differs(a: Assembly, b: Assembly) -> str:
         same = all(getattr(c, name) == getattr(d, name) for name in kept)
         if not (same and type(c.law) is type(d.law) and type(c.friction) is type(d.friction)):
             return f"contact '{c.name}'"
+    if not same_pools(a.pool, b.pool):
+        return "pools of contacts"
     for p, q in zip(a.derived, b.derived, strict=True):
         if type(p) is not type(q) or tuple(p.channels) != tuple(q.channels):
             return f"channel '{p.channels[0].name}'"

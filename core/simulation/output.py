@@ -67,7 +67,7 @@ class ChannelTable:
     def moved(self, assembly: Assembly) -> "ChannelTable":
         """The table of another run, of an assembly that differs in its numbers only."""
         new = twin(self)
-        new._derived = self._tables_of(assembly.derived)
+        new._derived, new._pool = self._tables_of(assembly.derived), assembly.pool
         return new
 
     def _tables_of(self, groups: Sequence[Derived]) -> DerivedTable:

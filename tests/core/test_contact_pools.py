@@ -17,6 +17,7 @@ from tlismni.core import (
     Simulation,
     Sphere3D,
     simulate,
+    simulate_many,
 )
 from tlismni.core.errors import ModelError, SimulationError, UnknownNameError
 from tlismni.core.simulation.state import State
@@ -182,3 +183,53 @@ def test_a_table_lists_the_contacts_of_a_sample() -> None:
         assert np.linalg.norm(row["point"] - surface) <= abs(off) + 1e-12
     with pytest.raises(UnknownNameError, match="'rain'"):
         result.contact_table("snow")
+
+
+def test_runs_with_other_numbers_are_those_of_their_own_models() -> None:
+    """Radii, masses and laws of a batch, bit for bit; the balls of the broad phase and the tables of slots follow."""
+    model, values = rain(6, 24), [0.02, 0.045, 0.05]
+    columns = {"rain.spheres.2.radius": values, "rain.law.restitution": [0.2, 0.5, 0.8], "s1.mass": [0.1, 0.2, 0.3]}
+    runs = simulate_many(model, columns, 0.15, method="moreau", step=1e-3)
+    for k in range(3):
+        own = model.with_parameters({name: column[k] for name, column in columns.items()})
+        single = simulate(own, 0.15, "moreau", step=1e-3)
+        for name in ("s2.z", "s4.x", "rain.impulse"):
+            assert runs[name][k] == single[name][-1]
+    assert len(set(runs["s2.z"].tolist())) == 3
+
+
+def test_several_groups_and_several_spheres_on_a_body() -> None:
+    """Dumbbells off their bodies' centres in two pools, beside a contact that is in none."""
+    times = np.linspace(0.0, 0.3, 7).tolist()
+
+    def model(most: int | None) -> Model:
+        bodies, spheres = [], []
+        for k in range(4):
+            bodies.append(
+                RigidBody3D(
+                    name=f"d{k}", mass=1.0, inertia=(0.01, 0.02, 0.025), position=(0.25 * k, 0.02 * k, 0.15 + 0.05 * k),
+                    velocity=(0.6 - 0.5 * k, 0.0, -1.0), angular_velocity=(0.0, 3.0 + k, 1.0),
+                )
+            )  # fmt: skip
+            for end in (-1.0, 1.0):
+                marker = Marker3D(body=f"d{k}", point=(0.07 * end, 0.01, 0.0))
+                spheres.append(Sphere3D(marker=marker, radius=0.04 + 0.005 * (k % 2)))
+        floor = HalfSpace3D(marker=Marker3D(attitude=Axes(z=(0.0, 0.1, 1.0))))
+        groups = [
+            ContactGroup3D(name="low", spheres=spheres, half_spaces=[floor], most_contacts=most, **NEWTON),
+            ContactGroup3D(name="one", spheres=[Sphere3D(marker=Marker3D(body="d0"), radius=0.02)],
+                           half_spaces=[HalfSpace3D(marker=Marker3D(point=(-0.3, 0, 0), attitude=Axes(z=(1, 0, 0))))],
+                           most_contacts=most and 2, **NEWTON),
+            ContactGroup3D(name="alone", spheres=[Sphere3D(marker=Marker3D(body="d3"), radius=0.02)],
+                           half_spaces=[HalfSpace3D(marker=Marker3D(point=(2, 0, 0), attitude=Axes(z=(-1, 0, 0))))],
+                           **NEWTON),
+        ]  # fmt: skip
+        return Model(gravity=(0.0, 0.0, -9.81), bodies=bodies, groups=groups)
+
+    single, pooled = (simulate(model(most), 0.3, "moreau", step=1e-3, t_eval=times) for most in (None, 24))
+    first = [(e.t, e.kind, e.contact) for e in single.events][:6]
+    assert [(e.t, e.kind, e.contact) for e in pooled.events][:6] == first
+    assert {"low_d0_d1_3", "low_d1_d2_3"} < {contact for *_, contact in first}
+    for k in range(4):
+        for name in (f"d{k}.x", f"d{k}.z"):
+            assert np.max(np.abs(pooled[name][:3] - single[name][:3])) < 1e-12
