@@ -20,6 +20,7 @@ from tlismni.core import (
     simulate_many,
 )
 from tlismni.core.errors import ModelError, SimulationError, UnknownNameError
+from tlismni.core.simulation.overlap_warning import warn_of_overlap
 from tlismni.core.simulation.state import State
 
 NEWTON = {"law": NewtonImpact(restitution=0.4), "friction": CoulombFriction(coefficient=0.3)}
@@ -233,3 +234,34 @@ def test_several_groups_and_several_spheres_on_a_body() -> None:
     for k in range(4):
         for name in (f"d{k}.x", f"d{k}.z"):
             assert np.max(np.abs(pooled[name][:3] - single[name][:3])) < 1e-12
+
+
+def test_deep_overlaps_are_said(caplog: pytest.LogCaptureFixture) -> None:
+    """A column of spheres that falls by more than their radius in a step; not with steps that fit."""
+    bodies, spheres = [], []
+    for k in range(8):
+        bodies.append(
+            RigidBody3D(name=f"s{k}", mass=0.1, inertia=(6e-5,) * 3, position=(0.0, 0.0, 0.05 + 0.09 * k),
+                        velocity=(0.0, 0.0, -10.0))
+        )  # fmt: skip
+        spheres.append(Sphere3D(marker=Marker3D(body=f"s{k}"), radius=0.04))
+    group = ContactGroup3D(name="pile", spheres=spheres, half_spaces=[HalfSpace3D(marker=Marker3D())], **NEWTON)
+    model = Model(gravity=(0.0, 0.0, -9.81), bodies=bodies, groups=[group])
+    simulate(model, 0.1, "moreau", step=5e-3)
+    said = [record.message for record in caplog.records if "overlap" in record.message]
+    assert len(said) == 1
+    assert "'pile_s0_s1' overlap by 0.0301 m" in said[0]
+    caplog.clear()
+    simulate(model, 0.1, "moreau", step=1e-4)
+    assert not caplog.records
+
+
+def test_a_deep_overlap_in_a_pool_has_the_name_of_its_pair(caplog: pytest.LogCaptureFixture) -> None:
+    run = Simulation(rain(6, 24), "moreau", step=1e-3)
+    run.advance(0.1)
+    sample, layout, pool = run.sample(), run.table.layout, run.assembly.pool
+    assert pool is not None
+    slot = int(np.flatnonzero(sample[layout.slot_pairs])[-1])
+    sample[layout.gap + pool.contacts[slot]] = -0.03
+    warn_of_overlap(sample[None, :], run.assembly, layout)
+    assert pool.name_of(int(sample[layout.slot_pairs][slot])) in caplog.text
