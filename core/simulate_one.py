@@ -16,7 +16,7 @@ from .input_schedule import CourseRun
 from .input_signals import Courses, Given, courses
 from .methods.default import DEFAULT_METHOD
 from .results.result import Result
-from .simulation.overlap_warning import warn_of_overlap
+from .simulation.impulse_step_warnings import warn_of_energy, warn_of_overlap
 from .simulation.simulation import Simulation
 from .tolerances import DEFAULT_ATOL
 
@@ -134,6 +134,7 @@ def _result(sim: Simulation, rows: list[Any], wall_time: float) -> Result:
     samples = np.concatenate(blocks) if blocks else np.zeros((0, sim.buffer.shape[1]))
     if sim.formula.impulses:
         warn_of_overlap(samples, sim.assembly, sim.table.layout)
+        warn_of_energy(samples, len(sim.assembly.contacts), sim.table.layout)
     steps = np.concatenate(sim.step_logs) if sim.step_logs else None
     stats = {**sim.stats, "wall_time": wall_time}
     return Result(

@@ -20,7 +20,7 @@ from tlismni.core import (
     simulate_many,
 )
 from tlismni.core.errors import ModelError, SimulationError, UnknownNameError
-from tlismni.core.simulation.overlap_warning import warn_of_overlap
+from tlismni.core.simulation.impulse_step_warnings import warn_of_overlap
 from tlismni.core.simulation.state import State
 
 NEWTON = {"law": NewtonImpact(restitution=0.4), "friction": CoulombFriction(coefficient=0.3)}

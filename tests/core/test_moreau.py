@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from helpers import G, point_pendulum
 from test_heap3d import box
+from thrown_scenes import _planar
 from tlismni.core import (
     Axes,
     Box2D,
@@ -225,3 +226,24 @@ def test_contacts_without_impulses_are_refused_by_name():
     model = load("mass_on_rod", massless_contact=True).model
     with pytest.raises(ModelError, match=r"method 'moreau' knows contacts as impulses, and contact '\w+' has none"):
         simulate(model, 1e-4, "moreau")
+
+
+def test_energy_from_restitution_is_said(caplog):
+    """Sharp boxes that are almost elastic and rough: Newton's law gives energy where many corners strike at once."""
+    scene = thrown_boxes(restitution=0.9)
+    result = simulate(scene, 1.2, "moreau", step=1e-3)
+    added = -np.diff(result["energy.impact_loss"])
+    assert np.max(added) > 1e-3 * np.max(result["energy.kinetic"])
+    assert [f"added {np.max(added):.3g} J" in record.message for record in caplog.records].count(True) == 1
+    caplog.clear()
+    simulate(thrown_boxes(restitution=0.0), 1.2, "moreau", step=1e-3)
+    assert not [record for record in caplog.records if "added" in record.message]
+
+
+def thrown_boxes(restitution):
+    """Seed 7040 of twelve bodies and fewer in a trough."""
+    rng = np.random.default_rng(7040)
+    count = int(rng.integers(6, 13))
+    rng.choice(5), rng.choice(4)
+    contact = {"law": NewtonImpact(restitution=restitution), "friction": CoulombFriction(coefficient=0.9)}
+    return _planar(rng, count, contact)

@@ -1,4 +1,4 @@
-"""How deep shapes overlap in the samples of a run with fixed steps of impulses, as a warning in the log."""
+"""What steps of impulses that are too long do to a run, as warnings in the log: overlaps, and energy from nowhere."""
 
 import logging
 
@@ -13,6 +13,8 @@ from ..state.pool_records import NO_PAIR
 logger = logging.getLogger(__name__)
 DEEP = 0.05
 """Of the distance over which two shapes could pass through each other."""
+GAIN = 1e-3
+"""Of the largest kinetic energy in the samples: what contacts may add between two of them."""
 
 
 def warn_of_overlap(samples: NDArray[np.float64], assembly: Assembly, layout: SampleLayout) -> None:
@@ -41,4 +43,25 @@ def warn_of_overlap(samples: NDArray[np.float64], assembly: Assembly, layout: Sa
         "%.3g m: steps are too long for what moves so fast; give a smaller `step`, in which nothing moves by more than "
         "a small part of its size",
         sample[0], name, -sample[layout.gap + k], extents[int(place)],
+    )  # fmt: skip
+
+
+def warn_of_energy(samples: NDArray[np.float64], contacts: int, layout: SampleLayout) -> None:
+    """Log a warning with the most energy that contacts have added between two samples, where that is not next to
+    nothing.
+
+    Restitution by Newton's law may raise the energy where several contacts with friction are struck at once (Kane and
+    Levinson 1985), and so do shapes that overlap and are pushed apart."""
+    if len(samples) < 2:
+        return
+    lost = np.sum(samples[:, layout.loss_jump : layout.loss_jump + contacts], axis=1)
+    added, largest = -np.diff(lost), float(np.max(samples[:, layout.kinetic]))
+    row = int(np.argmax(added))
+    if not added[row] > GAIN * largest:
+        return
+    logger.warning(
+        "between t = %.6g and %.6g s contacts added %.3g J to the motion, whose largest kinetic energy is %.3g J: by "
+        "restitution of several contacts with friction at once, or since overlapping shapes are pushed apart; give a "
+        "smaller `step` or less restitution, or take a method that locates events, such as 'ebdf'",
+        samples[row, 0], samples[row + 1, 0], added[row], largest,
     )  # fmt: skip
