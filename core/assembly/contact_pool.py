@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,22 +39,36 @@ class ContactPool:
     def name_of(self, number: int) -> str:
         """Name of the contact of a pair, as a group without a pool calls it: name_body1_body2, with a number behind
         where the two bodies have several."""
-        first, second = shapes_of_pair(number, len(self.shapes))
-        group, own = int(self.shapes["group"][first]), self.shapes
-        of = [k for k in range(len(own)) if own["group"][k] == group]
-        ones, others = ([k for k in of if own["body"][k] == own["body"][x]] for x in (first, second))
-        pairs = sorted((min(i, j), max(i, j)) for i in ones for j in others)
-        label = f"{self.names[group]}_{self.bodies[first]}_{self.bodies[second]}"
-        return label if len(pairs) == 1 else f"{label}_{pairs.index((first, second)) + 1}"
+        if number not in self._named:
+            first, second = shapes_of_pair(number, len(self.shapes))
+            group = int(self.shapes["group"][first])
+            ones, others = (self._shapes_of[group, self.bodies[x]] for x in (first, second))
+            pairs = sorted((min(i, j), max(i, j)) for i in ones for j in others)
+            label = f"{self.names[group]}_{self.bodies[first]}_{self.bodies[second]}"
+            self._named[number] = label if len(pairs) == 1 else f"{label}_{pairs.index((first, second)) + 1}"
+        return self._named[number]
+
+    @cached_property
+    def _named(self) -> dict[int, str]:
+        """Names of pairs that have been asked for: each event of a run asks."""
+        return {}
+
+    @cached_property
+    def _shapes_of(self) -> dict[tuple[int, str], list[int]]:
+        """The shapes of each body, by group and body."""
+        found: dict[tuple[int, str], list[int]] = {}
+        for shape, body in enumerate(self.bodies):
+            found.setdefault((int(self.shapes["group"][shape]), body), []).append(shape)
+        return found
 
     def has(self, name: str) -> bool:
         """Whether a pair of shapes has this name, as far as the names of both bodies tell."""
-        for group in self.names:
-            for first in dict.fromkeys(self.bodies):
-                start = f"{group}_{first}_"
-                second = name.removeprefix(start)
-                if name.startswith(start) and {second, second.rpartition("_")[0]} & set(self.bodies):
-                    return True
+        bodies = {body for _, body in self._shapes_of}
+        for group, first in self._shapes_of:
+            start = f"{self.names[group]}_{first}_"
+            second = name.removeprefix(start)
+            if name.startswith(start) and {second, second.rpartition("_")[0]} & bodies:
+                return True
         return False
 
 
@@ -93,11 +108,11 @@ def pool_of(contacts: Sequence[ContactElement], numbering: Numbering) -> Contact
             own["group"], own["radius"] = g, getattr(shape, "radius", 0.0)
             own["body"] = number_of.setdefault(marker.body, len(number_of))
             bodies.append(marker.body)
-        apart = {frozenset(pair) for pair in pool.except_bodies}
         of: dict[str, list[int]] = {}
         for at in range(first, len(bodies)):
             of.setdefault(bodies[at], []).append(at)
-        together = [(one, other) for one, other in map(tuple, apart) if one in of and other in of]
+        # the shapes of one body never touch each other
+        together = [(a, b) for a, b in pool.except_bodies if a != b and a in of and b in of]
         together += [(body, body) for body, members in of.items() if len(members) > 1 or body == GROUND]
         excluded += [
             pair_number(min(i, j), max(i, j), len(shapes)) for a, b in together for i in of[a] for j in of[b] if i != j

@@ -131,7 +131,7 @@ def test_too_little_room_is_said_and_nothing_is_lost() -> None:
 
 
 def test_bodies_that_do_not_touch_take_no_contact() -> None:
-    model = rain(2, 8, except_bodies=[("s0", "s1")])
+    model = rain(2, 8, except_bodies=[("s0", "s1"), ("s1", "s1")])
     fields = {name: getattr(model, name) for name in ("gravity", "groups")}
     one, other = model.bodies
     close = [one, other.model_copy(update={"position": one.position, "velocity": one.velocity})]
