@@ -19,6 +19,7 @@ from .drawing.contact_shapes import laid, shapes_of, show
 from .drawing.interactions import draw_interaction
 from .drawing.shapes import GROUND as GROUND_COLOUR
 from .drawing.shapes import INK, STEEL, TOUCH, Circle, Drawing, Path, moved, turned
+from .registry import registering
 from .scene import Floats, Frame, Line, Link, Part
 
 GRIP = 0.13
@@ -44,14 +45,8 @@ SYMBOLS: dict[str, Draw] = {}
 markers a and b, a radius."""
 
 
-def symbol(name: str) -> Callable[[Draw], Draw]:
-    """Decorator: the function draws elements with this symbol."""
-
-    def register(draw: Draw) -> Draw:
-        SYMBOLS[name] = draw
-        return draw
-
-    return register
+symbol = registering(SYMBOLS)
+"""Decorator: the function draws elements with this symbol."""
 
 
 def place(element: Any, stage: Stage) -> None:

@@ -15,6 +15,7 @@ from ..core.model.signals import INPUT_SIZE, Signal, evaluate_signal
 from ..core.multibody_model import Model
 from .bodies import Stage
 from .coordinates import coordinate_place
+from .registry import registering
 from .scene import Arrow, Floats
 
 Values = Callable[[str], Floats | None]
@@ -89,14 +90,8 @@ TOUCHES: dict[str, Find] = {}
 """What finds where contacts of the plane touch, by what their classes say (`ContactElement.touch`)."""
 
 
-def touches(name: str) -> Callable[[Find], Find]:
-    """Decorator: the function finds where contacts of this kind touch, by their fields."""
-
-    def register(find: Find) -> Find:
-        TOUCHES[name] = find
-        return find
-
-    return register
+touches = registering(TOUCHES)
+"""Decorator: the function finds where contacts of this kind touch, by their fields."""
 
 
 def touch(contact: Any, stage: Stage) -> Touch | None:

@@ -11,6 +11,7 @@ from ...core.elements import (
 )
 from ...core.model.markers import GROUND, Marker3D
 from ...core.model.signals import Constant, InputSignal
+from ..registry import registering
 from . import symbols
 from .contact_shapes import laid, shapes_of, show
 from .places import Places
@@ -27,14 +28,8 @@ SYMBOLS: dict[str, Draw] = {}
 """What draws elements of the plane, by their `symbol`."""
 
 
-def symbol(name: str) -> Callable[[Draw], Draw]:
-    """Decorator: the function draws elements of the plane with this symbol."""
-
-    def register(draw: Draw) -> Draw:
-        SYMBOLS[name] = draw
-        return draw
-
-    return register
+symbol = registering(SYMBOLS)
+"""Decorator: the function draws elements of the plane with this symbol."""
 
 
 def draw_interaction(element: Any, drawing: Drawing, places: Places) -> None:

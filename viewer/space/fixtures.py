@@ -8,6 +8,7 @@ import numpy as np
 from ...core.contacts.contact3d import HalfSpace3D
 from ...core.model.markers import GROUND, Marker3D
 from ..fixtures import kind_of_spring
+from ..registry import registering
 from ..scene import Floats
 from . import meshes
 from .colours import BASE, FLOOR, JOINT, WIRE
@@ -27,14 +28,8 @@ SYMBOLS: dict[str, Draw] = {}
 markers a and b, a radius."""
 
 
-def symbol(name: str) -> Callable[[Draw], Draw]:
-    """Decorator: the function draws elements in space with this symbol."""
-
-    def register(draw: Draw) -> Draw:
-        SYMBOLS[name] = draw
-        return draw
-
-    return register
+symbol = registering(SYMBOLS)
+"""Decorator: the function draws elements in space with this symbol."""
 
 
 def place(element: Any, stage: Stage3D) -> None:

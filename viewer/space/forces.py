@@ -8,6 +8,7 @@ import numpy as np
 from ...core.elements.base import ForceElement
 from ...core.model.markers import Marker3D
 from ..forces import signals_of
+from ..registry import registering
 from ..scene import Floats
 from .rounds import lowest
 from .stage import Stage3D
@@ -61,14 +62,8 @@ TOUCHES: dict[str, Find] = {}
 """What finds where contacts in space touch, by what their classes say (`ContactElement.touch`)."""
 
 
-def touches(name: str) -> Callable[[Find], Find]:
-    """Decorator: the function finds where contacts of this kind touch, by their fields."""
-
-    def register(find: Find) -> Find:
-        TOUCHES[name] = find
-        return find
-
-    return register
+touches = registering(TOUCHES)
+"""Decorator: the function finds where contacts of this kind touch, by their fields."""
 
 
 def touch(contact: Any, stage: Stage3D) -> Touch | None:
